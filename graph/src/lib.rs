@@ -1,0 +1,3 @@
+//! From RON text to an executable plan of GPU passes, without a GPU.
+pub mod diagnostic;
+pub mod source;
