@@ -181,7 +181,12 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap, color: bool) -> S
         match rendered {
             Ok(text) => out.push_str(&text),
             // Only a label outside of its file gets here; the message alone still says what is wrong.
-            Err(_) => out.push_str(&format!("{}[{}]: {}\n", if diagnostic.is_error() { "error" } else { "warning" }, diagnostic.code, diagnostic.message)),
+            Err(_) => out.push_str(&format!(
+                "{}[{}]: {}\n",
+                if diagnostic.is_error() { "error" } else { "warning" },
+                diagnostic.code,
+                diagnostic.message
+            )),
         }
     }
     out

@@ -151,3 +151,9 @@ impl Files for MemoryFiles {
         self.files.keys().filter(|key| key.0 == kind).map(|key| key.1.clone()).collect()
     }
 }
+
+impl Default for Span {
+    fn default() -> Span {
+        Span::NOWHERE
+    }
+}

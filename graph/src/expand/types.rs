@@ -1,0 +1,255 @@
+//! The output of expansion: a flat list of passes over resources with known extents.
+
+use crate::format::Format;
+use crate::published::{DrawFilter, ViewKind};
+use crate::source::Span;
+use crate::syntax::document::{BlendDoc, CullDoc, DepthDoc};
+
+/// A resource of [`Expanded::resources`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct ResourceId(pub u32);
+
+/// A pass of [`Expanded::passes`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct PassId(pub u32);
+
+impl ResourceId {
+    /// For indexing.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+impl PassId {
+    /// For indexing.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// A pipeline without loops, conditions and expressions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Expanded {
+    /// The pipeline's text.
+    pub doc: String,
+    /// Parameters with their values.
+    pub params: Vec<Param>,
+    /// Resources in the order of the file.
+    pub resources: Vec<Resource>,
+    /// Passes in the order of the file, loops unrolled in place.
+    pub passes: Vec<Pass>,
+    /// The outputs asked for.
+    pub outputs: Vec<Output>,
+}
+
+/// A parameter with its value.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Param {
+    /// As in the file.
+    pub name: String,
+    /// Where it is declared.
+    pub span: Span,
+    /// The value in force.
+    pub value: Value,
+    /// The allowed words, if `value` is a word.
+    pub options: Vec<String>,
+}
+
+/// The value of a parameter or an expression.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum Value {
+    Bool(bool),
+    Int(i64),
+    Float(f64),
+    /// Index into the options, and the word.
+    Word(u32, String),
+    /// Two to four components.
+    Vector(Vec<f64>),
+}
+
+/// A resource with its extent.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Resource {
+    /// As in the file.
+    pub name: String,
+    /// Where it is declared.
+    pub span: Span,
+    /// What it is.
+    pub shape: Shape,
+    /// The declared value.
+    pub clear: Option<ClearValue>,
+}
+
+/// What a resource is.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Shape {
+    /// Texels.
+    Texture(TextureShape),
+    /// Bytes.
+    Buffer {
+        /// How many, a multiple of 4 greater than zero.
+        bytes: u64,
+    },
+}
+
+/// The extent and formats of a texture. Everything is at least 1.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TextureShape {
+    /// 1D, 2D, 3D, cube.
+    pub dimension: Dimension,
+    /// In order of preference; never empty.
+    pub formats: Vec<Format>,
+    /// Where the format is written.
+    pub format_span: Span,
+    /// Of mip 0.
+    pub width: u32,
+    /// Of mip 0.
+    pub height: u32,
+    /// Of mip 0; 1 unless 3D.
+    pub depth: u32,
+    /// Array layers; six per cube.
+    pub layers: u32,
+    /// Mip levels.
+    pub mips: u32,
+    /// 1 or 4.
+    pub samples: u32,
+}
+
+/// The dimension of a texture.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Dimension {
+    D1,
+    D2,
+    D3,
+    Cube,
+}
+
+/// A value to clear to.
+#[derive(Debug, Clone, Copy, PartialEq)]
+#[allow(missing_docs)]
+pub enum ClearValue {
+    Zero,
+    Color([f64; 4]),
+    Depth(f32),
+    Uint([u32; 4]),
+}
+
+/// A pass with everything resolved but its shader.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Pass {
+    /// Stable and unique: `shade`, `faces[3].draw`.
+    pub name: String,
+    /// The name in the file.
+    pub span: Span,
+    /// Loop variables with their values, outermost first. They reach `params` like parameters.
+    pub indices: Vec<(String, u32)>,
+    /// What it does.
+    pub kind: PassKind,
+    /// The shader file, for kinds that have one.
+    pub shader: Option<Located<String>>,
+    /// Values of `override` constants.
+    pub constants: Vec<(Located<String>, f64)>,
+    /// Inputs. A Copy has one, named `read`.
+    pub reads: Vec<Slot>,
+    /// Outputs. A Copy or Clear has one, named `write`.
+    pub writes: Vec<Slot>,
+    /// Outputs that keep what is there.
+    pub modifies: Vec<Slot>,
+    /// Passes that must come first.
+    pub after: Vec<PassId>,
+}
+
+/// A value with its place.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct Located<T> {
+    /// The value.
+    pub value: T,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// What a pass does.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum PassKind {
+    Draw {
+        vertex: Option<Located<String>>,
+        fragment: Option<Located<String>>,
+        objects: DrawFilter,
+        view: ViewKind,
+        depth: Option<DepthDoc>,
+        cull: CullDoc,
+        blend: Vec<(Located<String>, BlendDoc)>,
+    },
+    Fullscreen {
+        entry: Option<Located<String>>,
+        blend: Vec<(Located<String>, BlendDoc)>,
+    },
+    Compute {
+        entry: Option<Located<String>>,
+        work: Work,
+    },
+    Copy,
+    Clear {
+        value: Option<ClearValue>,
+    },
+}
+
+impl PassKind {
+    /// The kind's name in RON.
+    pub fn name(&self) -> &'static str {
+        match self {
+            PassKind::Draw { .. } => "Draw",
+            PassKind::Fullscreen { .. } => "Fullscreen",
+            PassKind::Compute { .. } => "Compute",
+            PassKind::Copy => "Copy",
+            PassKind::Clear { .. } => "Clear",
+        }
+    }
+}
+
+/// How much work a Compute does.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Work {
+    /// One invocation per texel.
+    Cover(PartRef),
+    /// At least so many invocations along x.
+    Count(u32),
+    /// So many workgroups.
+    Groups([u32; 3]),
+}
+
+/// A shader variable or output, and the part it gets.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Slot {
+    /// The variable, output member or `depth`.
+    pub name: Located<String>,
+    /// What it gets.
+    pub part: PartRef,
+}
+
+/// A part of a resource.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct PartRef {
+    /// Whose part.
+    pub resource: ResourceId,
+    /// One mip level, or all.
+    pub mip: Option<u32>,
+    /// One layer or face, or all.
+    pub layer: Option<u32>,
+    /// The value as this pass left it, instead of the final one.
+    pub version: Option<PassId>,
+    /// Where the reference is written.
+    pub span: Span,
+}
+
+/// A result that was asked for.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Output {
+    /// The name under which users ask.
+    pub name: String,
+    /// What it is.
+    pub part: PartRef,
+}

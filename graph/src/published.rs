@@ -1,0 +1,224 @@
+//! The small interface between scenes and passes: what a scene publishes, by name.
+//!
+//! The graph knows the *schema* (names, kinds and layouts, to check shaders against and to bind by name) and nothing of what
+//! the tables mean. The *data* is plain bytes: a scene fills it, an executor uploads it, and neither knows the other.
+
+use indexmap::IndexMap;
+
+/// Everything that shaders may declare by name and get.
+#[derive(Debug, Clone, Default)]
+pub struct PublishedSchema {
+    /// Tables, by the name of the shader variable.
+    pub tables: IndexMap<String, TableSchema>,
+    /// Per-material textures, available to Draw passes: variable names in the order of [`MaterialBinding::textures`].
+    pub material_textures: Vec<String>,
+    /// Per-material samplers, in the order of [`MaterialBinding::samplers`].
+    pub material_samplers: Vec<String>,
+    /// Vertex attributes, by the name of the vertex shader's input.
+    pub vertex: VertexSchema,
+    /// What `has` and `scene.NAME` may ask for: the names of counts.
+    pub counts: Vec<String>,
+}
+
+/// A uniform or storage table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableSchema {
+    /// How it binds.
+    pub kind: TableKind,
+    /// For people.
+    pub doc: String,
+    /// Members of the struct (for `Storage`: of one element), each with WGSL type and byte offset. A shader's struct may declare
+    /// the leading members only.
+    pub members: Vec<TableMember>,
+    /// Bytes of the struct or of one element.
+    pub stride: u32,
+}
+
+/// How a table binds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum TableKind {
+    /// `var<uniform> name: Struct`
+    Uniform,
+    /// `var<uniform> name: Struct`, its content by the pass's view.
+    View,
+    /// `var<storage, read> name: array<Struct>` (or `array<u32>` where there are no members). Never empty: at least one zeroed
+    /// element; counts stand in a uniform.
+    Storage,
+}
+
+/// A member of a table.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct TableMember {
+    /// Name in WGSL.
+    pub name: String,
+    /// WGSL type as naga prints it: `f32`, `u32`, `vec3<f32>`, `mat4x4<f32>`.
+    pub wgsl: String,
+    /// Byte offset.
+    pub offset: u32,
+}
+
+/// The layout of the one vertex buffer.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct VertexSchema {
+    /// Bytes of a vertex.
+    pub stride: u32,
+    /// Attributes by name.
+    pub attributes: IndexMap<String, VertexAttribute>,
+}
+
+/// A vertex attribute.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct VertexAttribute {
+    /// Its format in memory.
+    pub format: VertexFormat,
+    /// Byte offset.
+    pub offset: u32,
+}
+
+/// Formats of vertex attributes.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum VertexFormat {
+    /// `vec2<f32>`
+    Float32x2,
+    /// `vec3<f32>`
+    Float32x3,
+    /// `vec4<f32>`
+    Float32x4,
+    /// `vec4<f32>` in a shader, four bytes in memory.
+    Unorm8x4,
+}
+
+impl VertexFormat {
+    /// Components of the shader's vector.
+    pub fn components(self) -> u32 {
+        match self {
+            VertexFormat::Float32x2 => 2,
+            VertexFormat::Float32x3 => 3,
+            VertexFormat::Float32x4 | VertexFormat::Unorm8x4 => 4,
+        }
+    }
+}
+
+/// How many of each thing a scene has: decides `has`, counts of loops and `scene.NAME` in expressions.
+pub type SceneCounts = IndexMap<String, u32>;
+
+/// A view that a plan draws from, in the order of [`crate::plan::Plan::views`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub struct ViewRequest {
+    /// From where.
+    pub kind: ViewKind,
+    /// Extent of the target in texels; shadow views snap to it.
+    pub width: u32,
+    /// Extent of the target in texels.
+    pub height: u32,
+}
+
+/// From where a view looks.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum ViewKind {
+    /// The rendering camera.
+    Camera,
+    /// The shadow view of a directional light, by its index among directional lights.
+    DirectionalLight(u32),
+    /// A cube face of a point or spot light, by its index among those, and the face.
+    LocalLight(u32, u32),
+}
+
+/// Which surfaces a draw list holds.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum DrawFilter {
+    Opaque,
+    Masked,
+    Solid,
+    Blended,
+    All,
+}
+
+/// What a scene publishes for one frame.
+#[derive(Debug, Clone, Default)]
+pub struct PublishedScene {
+    /// Bytes by table name. Tables of kind [`TableKind::View`] stand in `views`.
+    pub tables: IndexMap<String, Vec<u8>>,
+    /// For each requested view, the bytes of the view table.
+    pub views: Vec<Vec<u8>>,
+    /// The vertex buffer.
+    pub vertices: Vec<u8>,
+    /// The index buffer.
+    pub indices: Vec<u32>,
+    /// Textures of all materials.
+    pub textures: Vec<PublishedTexture>,
+    /// Samplers of all materials.
+    pub samplers: Vec<PublishedSampler>,
+    /// Per material, what its draws bind.
+    pub materials: Vec<MaterialBinding>,
+    /// For each requested draw list, its batches.
+    pub draw_lists: Vec<(DrawFilter, ViewKind, Vec<DrawBatch>)>,
+}
+
+/// An image with its mips: RGBA, 8 bits per channel.
+#[derive(Debug, Clone)]
+pub struct PublishedTexture {
+    /// For messages.
+    pub name: String,
+    /// Sampled values are decoded from sRGB.
+    pub srgb: bool,
+    /// Of level 0.
+    pub width: u32,
+    /// Of level 0.
+    pub height: u32,
+    /// Level by level, tightly packed rows.
+    pub mips: Vec<Vec<u8>>,
+}
+
+/// Filtering and addressing.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub struct PublishedSampler {
+    pub mag_linear: bool,
+    pub min_linear: bool,
+    pub mip_linear: bool,
+    /// Uses level 0 alone.
+    pub no_mips: bool,
+    pub wrap_u: PublishedWrap,
+    pub wrap_v: PublishedWrap,
+}
+
+/// What happens outside of 0..1.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[allow(missing_docs)]
+pub enum PublishedWrap {
+    ClampToEdge,
+    MirroredRepeat,
+    Repeat,
+}
+
+/// Indices into [`PublishedScene::textures`] and [`PublishedScene::samplers`], in the schema's order.
+#[derive(Debug, Clone, Default, PartialEq, Eq)]
+pub struct MaterialBinding {
+    /// One per [`PublishedSchema::material_textures`].
+    pub textures: Vec<usize>,
+    /// One per [`PublishedSchema::material_samplers`].
+    pub samplers: Vec<usize>,
+}
+
+/// One instanced draw call.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub struct DrawBatch {
+    /// Index into [`PublishedScene::materials`].
+    pub material: usize,
+    /// First index in the index buffer.
+    pub first_index: u32,
+    /// Three per triangle.
+    pub index_count: u32,
+    /// Added to every index.
+    pub base_vertex: i32,
+    /// First position in the `instance_slots` table.
+    pub first_instance: u32,
+    /// How many.
+    pub instance_count: u32,
+    /// The transform turns the winding.
+    pub mirrored: bool,
+    /// Never culled.
+    pub double_sided: bool,
+}
