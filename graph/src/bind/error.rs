@@ -79,7 +79,10 @@ impl From<BindError> for Diagnostic {
             BindError::Unfed { variable, known, span, pass_span, .. } => {
                 let hint = did_you_mean(&variable, known.iter().map(String::as_str))
                     .unwrap_or_else(|| format!("name a resource for it in the pass: read: {{\"{variable}\": \"..\"}}"));
-                Diagnostic::error("bind::unfed-variable", message).at(span, "declared here").and(pass_span, "the pass that uses the shader").hint(hint)
+                Diagnostic::error("bind::unfed-variable", message)
+                    .at(span, "declared here")
+                    .and(pass_span, "the pass that uses the shader")
+                    .hint(hint)
             }
             BindError::NoTaker { slot, declared, known, span, .. } => {
                 let hint = if declared {
@@ -90,10 +93,9 @@ impl From<BindError> for Diagnostic {
                 };
                 Diagnostic::error("bind::slot-without-variable", message).at(span, "this slot").hint(hint)
             }
-            BindError::Mismatch { kind, hint, slot_span, variable_span, .. } => Diagnostic::error(kind.code(), message)
-                .at(slot_span, "given here")
-                .and(variable_span, "declared here")
-                .maybe_hint(hint),
+            BindError::Mismatch { kind, hint, slot_span, variable_span, .. } => {
+                Diagnostic::error(kind.code(), message).at(slot_span, "given here").and(variable_span, "declared here").maybe_hint(hint)
+            }
             BindError::Param { hint, span, pass_span, .. } => Diagnostic::error("bind::params-member", message)
                 .at(span, "this member")
                 .and(pass_span, "the pass that uses the shader")
@@ -112,9 +114,9 @@ impl From<BindError> for Diagnostic {
                 diagnostic.hint("choose a format that can, or a list of formats: the first that can is taken")
             }
             BindError::OverLimit { span, .. } => Diagnostic::error("bind::over-limit", message).at(span, "this pass"),
-            BindError::MissingFeature { span, .. } => {
-                Diagnostic::error("bind::missing-feature", message).at(span, "here").hint("choose another adapter, or a format or method that does without it")
-            }
+            BindError::MissingFeature { span, .. } => Diagnostic::error("bind::missing-feature", message)
+                .at(span, "here")
+                .hint("choose another adapter, or a format or method that does without it"),
         }
     }
 }

@@ -10,7 +10,7 @@ use crate::reflect::interface::{GlobalKind, StorageAccess};
 /// A feature that some use of a format needs.
 pub(super) fn feature_for(format: Format, taker: &Taker) -> Option<(Feature, &'static str)> {
     match taker {
-        Taker::Variable(global, _) => match &global.kind {
+        Taker::Variable(global) => match &global.kind {
             GlobalKind::Texture { filtered: true, .. } if format.info().sample == SampleKind::UnfilterableFloat => {
                 Some((Feature::Float32Filterable, "to filter"))
             }
@@ -35,16 +35,16 @@ fn can(format: Format, taker: &Taker, device: &DeviceFacts) -> Result<(), String
         return Err(format!("{format}: {what} it, the device needs the feature `{}`", feature.name()));
     }
     match taker {
-        Taker::Variable(global, _) => match &global.kind {
+        Taker::Variable(global) => match &global.kind {
             GlobalKind::StorageTexture { format: declared, access, .. } => {
                 if *declared != format {
                     return Err(format!("{format}: the shader's storage texture `{}` is {declared}", global.name));
                 }
                 match (info.storage, access) {
                     (StorageSupport::None, _) => Err(format!("{format}: it can't be a storage texture")),
-                    (StorageSupport::ReadOrWrite, StorageAccess::ReadWrite) => {
-                        Err(format!("{format}: it can't be read and written in one storage texture (only r32uint, r32sint and r32float can)"))
-                    }
+                    (StorageSupport::ReadOrWrite, StorageAccess::ReadWrite) => Err(format!(
+                        "{format}: it can't be read and written in one storage texture (only r32uint, r32sint and r32float can)"
+                    )),
                     _ => Ok(()),
                 }
             }
@@ -73,7 +73,12 @@ fn can(format: Format, taker: &Taker, device: &DeviceFacts) -> Result<(), String
 }
 
 /// Chooses a format for every texture.
-pub(super) fn choose(expanded: &Expanded, taken: &[Vec<Taken>], device: &DeviceFacts, problems: &mut Vec<BindError>) -> Vec<Option<Format>> {
+pub(super) fn choose(
+    expanded: &Expanded,
+    taken: &[Vec<Taken>],
+    device: &DeviceFacts,
+    problems: &mut Vec<BindError>,
+) -> Vec<Option<Format>> {
     let mut uses: Vec<Vec<(usize, &Taken)>> = vec![Vec::new(); expanded.resources.len()];
     for (pass, slots) in taken.iter().enumerate() {
         for slot in slots {

@@ -31,7 +31,8 @@ fn encode(pass: &Pass, params: &[Param], member: &Member) -> Result<Vec<u8>, (St
     } else if let Some(param) = params.iter().find(|param| param.name == name) {
         param.value.clone()
     } else {
-        let known: Vec<&str> = params.iter().map(|param| param.name.as_str()).chain(pass.indices.iter().map(|(name, _)| name.as_str())).collect();
+        let known: Vec<&str> =
+            params.iter().map(|param| param.name.as_str()).chain(pass.indices.iter().map(|(name, _)| name.as_str())).collect();
         let hint = did_you_mean(name, known.iter().copied()).unwrap_or_else(|| format!("there are {}", list_names(known)));
         return Err((format!("the member `{name}` of `params` is no parameter of the pipeline"), Some(hint)));
     };

@@ -34,8 +34,8 @@ impl Program {
     }
 
     /// A variable by its name.
-    pub fn global(&self, name: &str) -> Option<&(Global, Stages)> {
-        self.by_name.get(name).and_then(|index| self.globals.get(*index))
+    pub fn global(&self, name: &str) -> Option<&Global> {
+        self.by_name.get(name).and_then(|index| self.globals.get(*index)).map(|(global, _)| global)
     }
 }
 

@@ -3,17 +3,14 @@
 use super::error::{BindError, Mismatch};
 use super::program::Program;
 use crate::expand::types::{PartRef, Pass, PassKind, Slot};
-use crate::plan::{Role, Stages};
+use crate::plan::Role;
 use crate::reflect::interface::{ColorOutput, Global, GlobalKind, Shader, StorageAccess};
-use crate::source::Span;
 
 /// A slot that found its place in the shader.
 #[derive(Debug, Clone)]
 pub(super) struct Taken {
     /// The slot's name.
     pub name: String,
-    /// Where the slot is written.
-    pub span: Span,
     /// What it gets.
     pub part: PartRef,
     /// Read, produce or modify.
@@ -26,7 +23,7 @@ pub(super) struct Taken {
 #[derive(Debug, Clone)]
 pub(super) enum Taker {
     /// A shader variable.
-    Variable(Box<Global>, Stages),
+    Variable(Box<Global>),
     /// A color output of the fragment shader.
     Color {
         /// Which.
@@ -51,7 +48,7 @@ pub(super) fn take(pass: &Pass, program: Option<&Program>, shaders: &[Shader], p
                 Some(program) => taker(pass, program, shaders, role, slot, problems),
             };
             if let Some(taker) = taker {
-                taken.push(Taken { name: slot.name.value.clone(), span: slot.name.span, part: slot.part, role, taker });
+                taken.push(Taken { name: slot.name.value.clone(), part: slot.part, role, taker });
             }
         }
     }
@@ -75,13 +72,14 @@ fn taker(pass: &Pass, program: &Program, shaders: &[Shader], role: Role, slot: &
         let blend = blends.iter().any(|(slot, _)| slot.value == name);
         return Some(Taker::Color { output: output.clone(), blend });
     }
-    if let Some((global, stages)) = program.global(name) {
+    if let Some(global) = program.global(name) {
         check_access(pass, role, slot, global, problems);
-        return Some(Taker::Variable(Box::new(global.clone()), *stages));
+        return Some(Taker::Variable(Box::new(global.clone())));
     }
     let shader = &shaders[program.shader];
     let declared = shader.module.global_variables.iter().any(|(_, variable)| variable.name.as_deref() == Some(name));
-    let known = program.globals.iter().map(|(global, _)| global.name.clone()).chain(outputs.iter().map(|output| output.name.clone())).collect();
+    let known =
+        program.globals.iter().map(|(global, _)| global.name.clone()).chain(outputs.iter().map(|output| output.name.clone())).collect();
     problems.push(BindError::NoTaker { pass: pass.name.clone(), slot: name.to_owned(), declared, known, span: slot.name.span });
     None
 }
@@ -89,13 +87,19 @@ fn taker(pass: &Pass, program: &Program, shaders: &[Shader], role: Role, slot: &
 /// A variable's access must be what its slot says, so that the RON alone shows the data flow.
 fn check_access(pass: &Pass, role: Role, slot: &Slot, global: &Global, problems: &mut Vec<BindError>) {
     let reason = match (&global.kind, role) {
-        (GlobalKind::Sampler { .. }, _) => Some(("is a sampler, and no resource can feed it", "samplers have fixed names, such as `linear_clamp`")),
+        (GlobalKind::Sampler { .. }, _) => {
+            Some(("is a sampler, and no resource can feed it", "samplers have fixed names, such as `linear_clamp`"))
+        }
         (GlobalKind::Uniform { .. } | GlobalKind::Texture { .. } | GlobalKind::DepthTexture { .. }, Role::Produce | Role::Modify) => {
-            Some(("can only be read, and the pass writes it", "move the slot to `read`, or declare a storage texture or a `var<storage, read_write>`"))
+            Some((
+                "can only be read, and the pass writes it",
+                "move the slot to `read`, or declare a storage texture or a `var<storage, read_write>`",
+            ))
         }
-        (GlobalKind::Storage { writable: false, .. }, Role::Produce | Role::Modify) => {
-            Some(("is declared `var<storage, read>`, and the pass writes it", "declare it `var<storage, read_write>`, or move the slot to `read`"))
-        }
+        (GlobalKind::Storage { writable: false, .. }, Role::Produce | Role::Modify) => Some((
+            "is declared `var<storage, read>`, and the pass writes it",
+            "declare it `var<storage, read_write>`, or move the slot to `read`",
+        )),
         (GlobalKind::Storage { writes: true, .. }, Role::Read) => {
             Some(("is written by the shader, and the pass only reads it", "move the slot to `write` or `modify`"))
         }

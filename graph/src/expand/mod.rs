@@ -41,7 +41,8 @@ pub struct ExpandInput<'a> {
 pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded, Vec<Diagnostic>> {
     let mut problems = Vec::new();
     let params = params::values(&validated.params, input.sets, &mut problems);
-    let mut environment = Environment { params, indices: Vec::new(), output: input.output, counts: input.counts, problems, reported: HashSet::new() };
+    let mut environment =
+        Environment { params, indices: Vec::new(), output: input.output, counts: input.counts, problems, reported: HashSet::new() };
     let resources: Vec<_> =
         validated.resources.iter().filter_map(|decl| resources::resource(&mut environment, decl, input.device)).collect();
     // Parts can only be checked against resources that are all there.
