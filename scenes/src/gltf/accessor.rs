@@ -43,6 +43,11 @@ impl<'b> Accessor<'b> {
         bytes.get(start..start.checked_add(self.size())?)
     }
 
+    /// Whether no byte of the file stands behind it: all elements are zero.
+    pub(super) fn is_implied(&self) -> bool {
+        self.base.is_none() && self.replaced.is_empty()
+    }
+
     /// Bytes of an element.
     pub(super) fn size(&self) -> usize {
         self.kind.size(self.component)

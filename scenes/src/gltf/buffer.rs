@@ -40,7 +40,9 @@ fn read_buffer(buffer: &Json<'_>, binary: Option<Vec<u8>>, folder: &Folder) -> O
         match binary {
             Some(bytes) => bytes,
             None => {
-                buffer.error("gltf::no-buffer-data", "has no `uri`, and the file has no binary chunk for it");
+                let extension = buffer.members("extensions").first().map(|(name, _)| format!("; it may need the extension {name}"));
+                let problem = format!("has no `uri`, and the file has no binary chunk for it{}", extension.unwrap_or_default());
+                buffer.error("gltf::no-buffer-data", problem);
                 return None;
             }
         }

@@ -142,12 +142,23 @@ fn measure(bytes: &[u8], format: ImageFormat) -> Result<u64, String> {
     let length = bytes.len() as u64;
     let possible = match format {
         ImageFormat::Png => {
-            let bits = u64::from(decoder.original_color_type().bits_per_pixel());
-            pixels * bits / 8 <= length * PNG_RATIO + SLACK
+            pixels * png_bits_per_pixel(bytes) / 8 <= length * PNG_RATIO + SLACK
         }
         _ => pixels <= length * JPEG_PIXELS_PER_BYTE + SLACK,
     };
     if possible { Ok(pixels) } else { Err(format!("promises {width}x{height} pixels, which {length} bytes can't hold")) }
+}
+
+/// From the header chunk, whose place is fixed: bytes 24 and 25 are bit depth and colour type. A palette has one channel.
+fn png_bits_per_pixel(bytes: &[u8]) -> u64 {
+    let depth = u64::from(bytes.get(24).copied().unwrap_or(1)).max(1);
+    let channels = match bytes.get(25) {
+        Some(2) => 3,
+        Some(4) => 2,
+        Some(6) => 4,
+        _ => 1,
+    };
+    depth * channels
 }
 
 fn reader(bytes: &[u8], format: ImageFormat) -> ImageReader<Cursor<&[u8]>> {

@@ -152,6 +152,14 @@ fn read_primitive<'a>(json: &Json<'_>, accessors: &'a [Option<Accessor<'a>>], ma
     for (attribute, accessor) in found.values().flatten() {
         same_count(attribute, accessor, position);
     }
+    // An optional compression has a fallback in the plain accessors; without one they have no data.
+    if let Some((name, _)) = json.members("extensions").iter().find(|(name, _)| name.ends_with("_mesh_compression"))
+        && position.is_implied()
+    {
+        let problem = format!("its vertices are only in the extension {name}, which is not supported");
+        json.report().error("gltf::unsupported-extension", json.place(), problem, "export the file without mesh compression, or decompress it");
+        return None;
+    }
     let get = |name: &str| found.get(name).and_then(|entry| entry.as_ref()).map(|(_, accessor)| *accessor);
     let numbered = |prefix: &str| {
         let number = |name: &str| name.strip_prefix(prefix)?.parse().ok();
