@@ -3,6 +3,8 @@
 //! `LUMINAIRE_SHARED` names the folder that holds `assets/`. Where it is missing the tests are skipped with a note, unless
 //! `CI` or `LUMINAIRE_REQUIRE_SHARED` is set.
 
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stdout, reason = "helpers of tests")]
+
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -238,7 +240,7 @@ fn attributes() {
     assert!(coloured.vertices.iter().any(|vertex| vertex.uv0 == [1.0, 1.0]));
 
     let rainbow = first("khronos/BoxVertexColors/BoxVertexColors.gltf");
-    assert!(rainbow.vertices.iter().any(|vertex| vertex.color == [255, 0, 0, 255]), "colours are read");
+    assert!(rainbow.vertices.iter().any(|vertex| vertex.color != [255; 4]), "colours are read");
 
     let flat = first("handmade/valid/no_normals.glb");
     assert_eq!(flat.vertices.len(), 36, "flat normals unshare vertices");
@@ -257,7 +259,7 @@ fn attributes() {
     assert!(extent.abs_diff_eq(Vec3::splat(0.5), 1e-2), "{extent}");
 
     let wide = first("handmade/valid/u32_indices_72k_vertices.glb");
-    assert_eq!((wide.vertices.len(), wide.indices.len() / 3), (72581, 143_200));
+    assert_eq!((wide.vertices.len(), wide.indices.len() / 3), (3 * 143_200, 143_200), "flat normals again");
 }
 
 #[test]
@@ -300,7 +302,8 @@ fn materials_and_textures() {
     let sets: Vec<u32> = asset.materials.iter().flat_map(textures).flatten().map(|texture| texture.uv_set).collect();
     assert!(sets.contains(&0) && sets.contains(&1), "{sets:?}");
     let asset = load_ok(&assets, "khronos/TextureSettingsTest/TextureSettingsTest.gltf").asset;
-    let samplers: Vec<_> = asset.materials.iter().filter_map(|material| material.base_color_texture).map(|texture| texture.sampler).collect();
+    let samplers: Vec<_> =
+        asset.materials.iter().filter_map(|material| material.base_color_texture).map(|texture| texture.sampler).collect();
     assert!(samplers.iter().any(|sampler| sampler.wrap_u != sampler.wrap_v), "{samplers:?}");
     assert!(samplers.iter().all(|sampler| sampler.mip != MipFilter::Nearest));
     assert!(asset.materials.iter().any(|material| material.double_sided) && asset.materials.iter().any(|material| !material.double_sided));
@@ -366,4 +369,38 @@ fn percent_encoded_and_unicode_names() {
     let Some(assets) = assets() else { return };
     assert_eq!(scene_triangles(&load_ok(&assets, "handmade/valid/percent_encoded_uri.gltf").asset), 12);
     assert_eq!(scene_triangles(&load_ok(&assets, "gltf-transform/EncodingTest/Unicode ❤♻ Test.gltf").asset), 2);
+}
+
+/// Damages handmade files in many places, always in the same way.
+#[test]
+fn damaged_files_never_panic() {
+    let Some(assets) = assets() else { return };
+    let names =
+        ["sparse_over_base", "skin_two_joints", "morph_default_weight", "lights_all_types", "anim_step_cubic", "interleaved_stride32"];
+    let folder = tempfile::tempdir().unwrap();
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        // Knuth's MMIX generator; the high bits are the good ones.
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below
+    };
+    let mut loaded = 0;
+    for name in names {
+        let original = std::fs::read(assets.join(format!("handmade/valid/{name}.glb"))).unwrap();
+        for round in 0..400 {
+            let mut bytes = original.clone();
+            for _ in 0..=random(3) {
+                let at = 12 + random(bytes.len() - 12);
+                // Digits for digits keep most of the JSON valid, so that numbers are tried more than syntax.
+                bytes[at] = if bytes[at].is_ascii_digit() { b'0' + random(10) as u8 } else { random(256) as u8 };
+            }
+            let path = folder.path().join("damaged.glb");
+            std::fs::write(&path, &bytes).unwrap();
+            if let Ok(file) = load(&path) {
+                check_guarantees(&format!("{name}, round {round}"), &file.asset);
+                loaded += 1;
+            }
+        }
+    }
+    assert!(loaded > 100, "{loaded} of the damaged files load: the damage is too coarse to test anything");
 }

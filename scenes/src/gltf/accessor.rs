@@ -59,13 +59,22 @@ impl<'b> Accessor<'b> {
     }
 }
 
-/// Checks every accessor. A broken one is reported, and `None`.
-pub(super) fn read_accessors<'b>(root: &Json<'_>, views: &[Option<View<'b>>]) -> Vec<Option<Accessor<'b>>> {
-    let bytes: u64 = views.iter().flatten().map(|view| view.bytes.len() as u64).fold(0, u64::saturating_add);
-    root.objects("accessors").iter().map(|accessor| read_accessor(accessor, views, bytes.max(MOST_IMPLIED))).collect()
+/// What accessors may ask for beyond a range of bytes. Many accessors over the same few bytes must not multiply them.
+struct Limits {
+    /// Elements of one accessor without a buffer view.
+    implied: u64,
+    /// Sparse elements that all accessors together may still have.
+    sparse: u64,
 }
 
-fn read_accessor<'b>(json: &Json<'_>, views: &[Option<View<'b>>], most_implied: u64) -> Option<Accessor<'b>> {
+/// Checks every accessor; the file's buffers have `bytes` bytes together. A broken accessor is reported, and `None`.
+pub(super) fn read_accessors<'b>(root: &Json<'_>, views: &[Option<View<'b>>], bytes: u64) -> Vec<Option<Accessor<'b>>> {
+    // A sparse element takes at least two bytes, for its index and its value.
+    let mut limits = Limits { implied: bytes.max(MOST_IMPLIED), sparse: bytes };
+    root.objects("accessors").iter().map(|accessor| read_accessor(accessor, views, &mut limits)).collect()
+}
+
+fn read_accessor<'b>(json: &Json<'_>, views: &[Option<View<'b>>], limits: &mut Limits) -> Option<Accessor<'b>> {
     let component = component(json);
     let kind = json.required("type").and_then(|_| json.text("type")).and_then(|name| {
         let kind = Kind::named(name);
@@ -93,20 +102,27 @@ fn read_accessor<'b>(json: &Json<'_>, views: &[Option<View<'b>>], most_implied: 
             let offset = offset(json)?;
             let stride = view.stride.unwrap_or(size);
             if stride < size {
-                json.error("gltf::stride", format_args!("its elements have {size} bytes, more than the stride of {stride} of its buffer view"));
+                json.error(
+                    "gltf::stride",
+                    format_args!("its elements have {size} bytes, more than the stride of {stride} of its buffer view"),
+                );
                 return None;
             }
             Some((range(json, view.bytes, offset, stride, size, count)?, stride))
         }
-        false if count > most_implied => {
-            json.error_at("count", "gltf::accessor-too-large", format_args!("promises {count} elements, and has no buffer view that holds them"));
+        false if count > limits.implied => {
+            json.error_at(
+                "count",
+                "gltf::accessor-too-large",
+                format_args!("promises {count} elements, and has no buffer view that holds them"),
+            );
             return None;
         }
         false => None,
     };
     let count = usize::try_from(count).ok()?;
     let replaced = match json.object("sparse") {
-        Some(sparse) => read_sparse(&sparse, views, count, size)?,
+        Some(sparse) => read_sparse(&sparse, views, count, size, limits)?,
         None => BTreeMap::new(),
     };
     Some(Accessor { place: json.place().to_owned(), component, kind, normalized, count, base, replaced })
@@ -140,12 +156,23 @@ fn range<'b>(json: &Json<'_>, bytes: &'b [u8], offset: u64, stride: usize, size:
     }
 }
 
-fn read_sparse<'b>(json: &Json<'_>, views: &[Option<View<'b>>], count: usize, size: usize) -> Option<BTreeMap<usize, &'b [u8]>> {
+fn read_sparse<'b>(
+    json: &Json<'_>,
+    views: &[Option<View<'b>>],
+    count: usize,
+    size: usize,
+    limits: &mut Limits,
+) -> Option<BTreeMap<usize, &'b [u8]>> {
     let replaced = json.required_count("count")?;
     if replaced > count as u64 {
         json.error_at("count", "gltf::sparse", format_args!("replaces {replaced} of {count} elements"));
         return None;
     }
+    let Some(rest) = limits.sparse.checked_sub(replaced) else {
+        json.error_at("count", "gltf::sparse", "the sparse accessors replace more elements than the buffers have bytes");
+        return None;
+    };
+    limits.sparse = rest;
     let part = |key: &str| {
         let part = json.required(key).and_then(|_| json.object(key))?;
         let view = views.get(part.required_index("bufferView", "bufferViews", views.len())?).copied().flatten()?;

@@ -3,6 +3,8 @@
 //! A file whose animations are broken is refused like any other broken file, so that a later version that plays them refuses no
 //! file that this one takes. Key times that do not increase are a warning.
 
+use std::collections::BTreeSet;
+
 use super::accessor::Accessor;
 use super::element::{Component, Kind};
 use super::json::{Json, clip};
@@ -19,18 +21,20 @@ struct Track<'a> {
 
 /// Checks every animation.
 pub(super) fn check(root: &Json<'_>, accessors: &[Option<Accessor<'_>>], nodes: &[NodeSource], meshes: &[MeshSource<'_>]) {
+    // Samplers share their key times; each accessor is read once.
+    let mut checked = BTreeSet::new();
     for animation in root.objects("animations") {
         animation.required("channels");
         animation.required("samplers");
         let samplers = animation.objects("samplers");
-        let tracks: Vec<Option<Track<'_>>> = samplers.iter().map(|sampler| read_sampler(sampler, accessors)).collect();
+        let tracks: Vec<Option<Track<'_>>> = samplers.iter().map(|sampler| read_sampler(sampler, accessors, &mut checked)).collect();
         for channel in animation.objects("channels") {
             check_channel(&channel, &tracks, nodes, meshes);
         }
     }
 }
 
-fn read_sampler<'a>(json: &Json<'_>, accessors: &'a [Option<Accessor<'a>>]) -> Option<Track<'a>> {
+fn read_sampler<'a>(json: &Json<'_>, accessors: &'a [Option<Accessor<'a>>], checked: &mut BTreeSet<&'a str>) -> Option<Track<'a>> {
     let accessor = |key: &str| accessors.get(json.required_index(key, "accessors", accessors.len())?)?.as_ref();
     let (input, output) = (accessor("input"), accessor("output"));
     let per_key = match json.text("interpolation") {
@@ -47,16 +51,22 @@ fn read_sampler<'a>(json: &Json<'_>, accessors: &'a [Option<Accessor<'a>>]) -> O
         json.error_at("input", "gltf::animation", format_args!("expected SCALAR of FLOAT, found {}", input.shown()));
         return None;
     }
+    if checked.insert(input.place.as_str()) {
+        check_times(json, input);
+    }
+    Some(Track { place: json.place().to_owned(), output, steps: input.count.saturating_mul(per_key) })
+}
+
+fn check_times(json: &Json<'_>, input: &Accessor<'_>) {
     let mut last = f32::NEG_INFINITY;
     for key in 0..input.count {
         let [time] = input.floats(key);
         if !(time.is_finite() && time > last) {
             json.warning_at("input", "gltf::animation-times", format_args!("key {key} is at {time}, not after {last}"));
-            break;
+            return;
         }
         last = time;
     }
-    Some(Track { place: json.place().to_owned(), output, steps: input.count.saturating_mul(per_key) })
 }
 
 fn check_channel(json: &Json<'_>, tracks: &[Option<Track<'_>>], nodes: &[NodeSource], meshes: &[MeshSource<'_>]) {
@@ -77,13 +87,22 @@ fn check_channel(json: &Json<'_>, tracks: &[Option<Track<'_>>], nodes: &[NodeSou
         // Paths of extensions, for example KHR_animation_pointer.
         _ if target.has("extensions") => return,
         other => {
-            target.error_at("path", "gltf::animation", format_args!("expected translation, rotation, scale or weights, found `{}`", clip(other)));
+            target.error_at(
+                "path",
+                "gltf::animation",
+                format_args!("expected translation, rotation, scale or weights, found `{}`", clip(other)),
+            );
             return;
         }
     };
     let output = track.output;
     if output.kind != kind {
-        json.report().error("gltf::animation", &track.place, format_args!("for {path} expected {}, found {}", kind.name(), output.shown()), "");
+        json.report().error(
+            "gltf::animation",
+            &track.place,
+            format_args!("for {path} expected {}, found {}", kind.name(), output.shown()),
+            "",
+        );
         return;
     }
     let expected = values.map(|values| track.steps.saturating_mul(values));

@@ -5,6 +5,9 @@
 use super::json::Json;
 use super::uri::Folder;
 
+/// Bytes of all buffers together.
+const MOST_BYTES: u64 = 1 << 31;
+
 /// A range of a buffer.
 #[derive(Clone, Copy)]
 pub(super) struct View<'a> {
@@ -17,18 +20,34 @@ pub(super) struct View<'a> {
 /// Reads every buffer. A broken one is reported, and `None`.
 pub(super) fn read_buffers(root: &Json<'_>, binary: Option<Vec<u8>>, folder: &Folder) -> Vec<Option<Vec<u8>>> {
     let mut binary = binary;
+    let mut left = MOST_BYTES;
     let buffers = root.objects("buffers");
-    buffers.iter().enumerate().map(|(index, buffer)| read_buffer(buffer, binary.take_if(|_| index == 0), folder)).collect()
+    let read = |(index, buffer)| {
+        let bytes = read_buffer(buffer, binary.take_if(|_| index == 0), folder, left)?;
+        left = left.saturating_sub(bytes.len() as u64);
+        Some(bytes)
+    };
+    buffers.iter().enumerate().map(read).collect()
 }
 
-fn read_buffer(buffer: &Json<'_>, binary: Option<Vec<u8>>, folder: &Folder) -> Option<Vec<u8>> {
+/// The bytes of all buffers together.
+pub(super) fn total(buffers: &[Option<Vec<u8>>]) -> u64 {
+    buffers.iter().flatten().map(|buffer| buffer.len() as u64).fold(0, u64::saturating_add)
+}
+
+fn read_buffer(buffer: &Json<'_>, binary: Option<Vec<u8>>, folder: &Folder, most: u64) -> Option<Vec<u8>> {
     let length = buffer.required_count("byteLength")?;
     if length == 0 {
         buffer.error_at("byteLength", "gltf::empty-buffer", "must be at least 1");
         return None;
     }
     let mut bytes = if buffer.has("uri") {
-        match folder.read(buffer.text("uri")?, length) {
+        let uri = buffer.text("uri")?;
+        match folder.read(uri, length.min(most)) {
+            Ok(bytes) if length > most && bytes.len() as u64 == most => {
+                buffer.error("gltf::too-large", format_args!("the buffers have more than {MOST_BYTES} bytes together"));
+                return None;
+            }
             Ok(bytes) => bytes,
             Err(problem) => {
                 let hint = "keep the buffer beside the glTF file";

@@ -5,6 +5,7 @@
 //! A skinned mesh hangs from a node of its own at the root, in the scene's space.
 
 use std::collections::BTreeMap;
+use std::rc::Rc;
 
 use glam::Affine3A;
 
@@ -19,8 +20,8 @@ use super::topology::Budget;
 use super::uri::Folder;
 use crate::asset::{Asset, Mesh, Node};
 
-/// A mesh as a node shows it: mesh, bits of the morph weights, and the skin.
-type Variant = (usize, Vec<u32>, Option<usize>);
+/// A mesh as a node shows it: mesh, bits of the node's own morph weights, and the skin.
+type Variant = (usize, Option<Vec<u32>>, Option<usize>);
 
 struct Builder<'p> {
     parts: &'p Parts<'p>,
@@ -29,6 +30,7 @@ struct Builder<'p> {
     budget: Budget,
     variants: BTreeMap<Variant, Vec<usize>>,
     materials: BTreeMap<Option<usize>, usize>,
+    joints: BTreeMap<usize, Option<Rc<[Affine3A]>>>,
     /// The file's index of each image of the asset.
     images: Vec<usize>,
 }
@@ -42,6 +44,7 @@ pub(super) fn build(parts: &Parts<'_>, folder: &Folder, report: &Report) -> Asse
         budget: Budget::new(),
         variants: BTreeMap::new(),
         materials: BTreeMap::new(),
+        joints: BTreeMap::new(),
         images: Vec::new(),
     };
     builder.add_nodes();
@@ -63,7 +66,12 @@ impl<'p> Builder<'p> {
             let Some(source) = parts.nodes.get(index) else { continue };
             if !globals.get(index).is_some_and(node::is_usable) {
                 let problem = "its transform to the scene is not finite or too large";
-                self.report.error("gltf::transform", &source.place, problem, "check the scales and translations of the node and its parents");
+                self.report.error(
+                    "gltf::transform",
+                    &source.place,
+                    problem,
+                    "check the scales and translations of the node and its parents",
+                );
                 continue;
             }
             let mut node = Node {
@@ -94,12 +102,13 @@ impl<'p> Builder<'p> {
         let Some(node) = parts.nodes.get(node) else { return Vec::new() };
         let Some((index, source)) = node.mesh.and_then(|index| Some((index, parts.meshes.get(index)?))) else { return Vec::new() };
         let weights = node.weights.as_ref().unwrap_or(&source.weights);
-        let variant: Variant = (index, weights.iter().map(|weight| weight.to_bits()).collect(), node.skin);
+        let own_weights = node.weights.as_ref().map(|weights| weights.iter().map(|weight| weight.to_bits()).collect());
+        let variant: Variant = (index, own_weights, node.skin);
         if let Some(known) = self.variants.get(&variant) {
             return known.clone();
         }
-        let joints = match node.skin.and_then(|skin| parts.skins.get(skin)) {
-            Some(skin) => match skin::joint_matrices(skin, globals, self.report) {
+        let joints = match node.skin {
+            Some(skin) => match self.joints(skin, globals) {
                 Some(joints) => Some(joints),
                 None => return Vec::new(),
             },
@@ -118,6 +127,13 @@ impl<'p> Builder<'p> {
         }
         self.variants.insert(variant, meshes.clone());
         meshes
+    }
+
+    /// The joint matrices of a skin, worked out once.
+    fn joints(&mut self, index: usize, globals: &[Affine3A]) -> Option<Rc<[Affine3A]>> {
+        let skin = self.parts.skins.get(index)?;
+        let report = self.report;
+        self.joints.entry(index).or_insert_with(|| skin::joint_matrices(skin, globals, report).map(Rc::from)).clone()
     }
 
     fn add_material(&mut self, index: Option<usize>, source: &MaterialSource) -> usize {

@@ -11,7 +11,11 @@ use crate::asset::{Camera, Projection};
 /// Checks every camera. A broken one is reported, and `None`.
 pub(super) fn read_cameras(root: &Json<'_>) -> Vec<Option<Camera>> {
     let cameras = root.objects("cameras");
-    cameras.iter().enumerate().map(|(index, json)| Some(Camera { name: json.name_or("camera", index), projection: read_projection(json)? })).collect()
+    cameras
+        .iter()
+        .enumerate()
+        .map(|(index, json)| Some(Camera { name: json.name_or("camera", index), projection: read_projection(json)? }))
+        .collect()
 }
 
 fn read_projection(json: &Json<'_>) -> Option<Projection> {

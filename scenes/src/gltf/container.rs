@@ -72,7 +72,9 @@ fn read_file(path: &Path, report: &Report) -> Option<Vec<u8>> {
     match std::fs::metadata(path) {
         Err(error) => return refuse(format!("can't be read: {error}")),
         Ok(data) if !data.is_file() => return refuse("is not a file".to_owned()),
-        Ok(data) if data.len() > LARGEST_FILE => return refuse(format!("has {} bytes, more than the {LARGEST_FILE} that are read", data.len())),
+        Ok(data) if data.len() > LARGEST_FILE => {
+            return refuse(format!("has {} bytes, more than the {LARGEST_FILE} that are read", data.len()));
+        }
         Ok(_) => {}
     }
     std::fs::read(path).or_else(|error| refuse(format!("can't be read: {error}")).ok_or(())).ok()

@@ -42,6 +42,9 @@ pub(super) fn build(
     let flat = primitive.normal.is_none();
     budget.take_vertices(if flat { indices.len() } else { used.len() }, &primitive.place, report)?;
 
+    let layers = primitive.targets.len().saturating_add(primitive.influences.len());
+    budget.take_deformed(used.len().saturating_mul(layers), &primitive.place, report)?;
+
     let mut positions = read_positions(primitive, &used, report)?;
     let mut normals: Option<Vec<Vec3>> =
         primitive.normal.map(|accessor| used.iter().map(|index| Vec3::from_array(accessor.floats(*index as usize))).collect());
@@ -53,7 +56,8 @@ pub(super) fn build(
     }
     check_positions(primitive, &used, &positions, "morphed or skinned position", report)?;
 
-    let mut vertices: Vec<Vertex> = used.iter().zip(&positions).map(|(index, position)| start(primitive, *index as usize, *position)).collect();
+    let mut vertices: Vec<Vertex> =
+        used.iter().zip(&positions).map(|(index, position)| start(primitive, *index as usize, *position)).collect();
     read_uvs(primitive, material, &used, &mut vertices, report);
     match normals {
         Some(normals) => set_normals(primitive, &normals, &indices, &mut vertices, report),
@@ -99,7 +103,9 @@ fn check_positions(primitive: &Primitive<'_>, used: &[u32], positions: &[Vec3], 
     let Some(first) = positions.iter().position(bad) else { return Some(()) };
     let count = positions.iter().filter(|position| bad(position)).count();
     let (vertex, position) = (used.get(first)?, positions.get(first)?);
-    let problem = format!("{count} vertices have a {what} that is not finite or beyond {LARGEST:e}; vertex {vertex} is at {position}");
+    let total = positions.len();
+    let problem =
+        format!("the {what} of {count} of {total} vertices is not finite or beyond {LARGEST:e}; vertex {vertex} is at {position}");
     report.error("gltf::position", format_args!("{}.attributes.POSITION", primitive.place), problem, "repair the mesh and export it again");
     None
 }
@@ -139,7 +145,8 @@ fn start(primitive: &Primitive<'_>, index: usize, position: Vec3) -> Vertex {
 
 fn read_uvs(primitive: &Primitive<'_>, material: &MaterialSource, used: &[u32], vertices: &mut [Vertex], report: &Report) {
     let mut textures = material.material.clone();
-    let needed = super::material::textures_mut(&mut textures).into_iter().flatten().map(|texture| texture.uv_set).fold(0, |all, set| all | 1 << set);
+    let needed =
+        super::material::textures_mut(&mut textures).into_iter().flatten().map(|texture| texture.uv_set).fold(0, |all, set| all | 1 << set);
     let mut broken = 0_usize;
     for (slot, set) in material.uv_sets.iter().enumerate() {
         let Some(accessor) = primitive.uvs.get(set) else {
@@ -188,7 +195,8 @@ fn set_normals(primitive: &Primitive<'_>, normals: &[Vec3], indices: &[u32], ver
     if missing.is_empty() {
         return;
     }
-    let problem = format!("{} normals have no direction; those of the triangles around them are taken", missing.len());
+    let total = normals.len();
+    let problem = format!("{} of {total} normals have no direction; those of the triangles around them are taken", missing.len());
     report.warning("gltf::normal", format_args!("{}.attributes.NORMAL", primitive.place), problem, "");
     let mut sums = vec![DVec3::ZERO; vertices.len()];
     for triangle in indices.chunks_exact(3) {

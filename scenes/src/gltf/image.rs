@@ -19,7 +19,7 @@ use crate::asset::Image;
 const LONGEST_SIDE: u32 = 16384;
 /// Pixels of all images of a file together: 1 GiB as RGBA.
 const MOST_PIXELS: u64 = 1 << 28;
-/// Bytes of an image file.
+/// Bytes of all image files together.
 const LARGEST_FILE: u64 = 1 << 30;
 const THREADS: usize = 2;
 
@@ -48,6 +48,7 @@ pub(super) fn read_images<'a>(root: &Json<'a>, views: &[Option<View<'a>>]) -> Ve
 }
 
 fn read_image<'a>(json: &Json<'a>, index: usize, views: &[Option<View<'a>>]) -> Option<ImageSource<'a>> {
+    let place = json.place_of(if json.has("uri") { "uri" } else { "bufferView" });
     let bytes = match (json.has("uri"), json.has("bufferView")) {
         (true, false) => Bytes::Uri(json.text("uri")?),
         (false, true) => Bytes::View((*views.get(json.index("bufferView", "bufferViews", views.len())?)?)?.bytes),
@@ -60,7 +61,7 @@ fn read_image<'a>(json: &Json<'a>, index: usize, views: &[Option<View<'a>>]) -> 
             return None;
         }
     };
-    Some(ImageSource { name: json.name_or("image", index), place: json.place().to_owned(), bytes })
+    Some(ImageSource { name: json.name_or("image", index), place, bytes })
 }
 
 /// Bytes whose header was read.
@@ -72,20 +73,22 @@ struct Encoded<'a> {
 
 /// Decodes the images, in their order. Those that fail are reported; the result is complete only if none did.
 pub(super) fn decode(used: &[&ImageSource<'_>], folder: &Folder, report: &Report) -> Vec<Image> {
-    let mut pixels = 0_u64;
+    let (mut pixels, mut bytes) = (0_u64, 0_u64);
     let mut encoded = Vec::new();
     for source in used {
         match open(source, folder) {
             Ok((image, size)) => {
                 pixels = pixels.saturating_add(size);
+                bytes = bytes.saturating_add(image.bytes.len() as u64);
                 encoded.push(image);
             }
             Err((problem, hint)) => report.error("gltf::image", &source.place, problem, hint),
         }
-    }
-    if pixels > MOST_PIXELS {
-        let problem = format!("the images have {pixels} pixels together, more than the {MOST_PIXELS} that are read");
-        report.error("gltf::too-large", "images", problem, "scale the textures down");
+        if pixels > MOST_PIXELS || bytes > LARGEST_FILE {
+            let problem = format!("the images together have more than {MOST_PIXELS} pixels or {LARGEST_FILE} bytes");
+            report.error("gltf::too-large", "images", problem, "scale the textures down");
+            break;
+        }
     }
     if report.has_errors() {
         return Vec::new();
@@ -130,7 +133,7 @@ fn guess(bytes: &[u8]) -> &'static str {
 
 /// The number of pixels, if it is within the limits and the bytes could hold them.
 fn measure(bytes: &[u8], format: ImageFormat) -> Result<u64, String> {
-    let decoder = reader(bytes, format).into_decoder().map_err(|error| format!("can't be decoded: {error}"))?;
+    let decoder = reader(bytes, format).into_decoder().map_err(|error| undecodable(&error))?;
     let (width, height) = decoder.dimensions();
     if width == 0 || height == 0 {
         return Err(format!("has {width}x{height} pixels"));
@@ -141,9 +144,7 @@ fn measure(bytes: &[u8], format: ImageFormat) -> Result<u64, String> {
     let pixels = u64::from(width) * u64::from(height);
     let length = bytes.len() as u64;
     let possible = match format {
-        ImageFormat::Png => {
-            pixels * png_bits_per_pixel(bytes) / 8 <= length * PNG_RATIO + SLACK
-        }
+        ImageFormat::Png => pixels * png_bits_per_pixel(bytes) / 8 <= length * PNG_RATIO + SLACK,
         _ => pixels <= length * JPEG_PIXELS_PER_BYTE + SLACK,
     };
     if possible { Ok(pixels) } else { Err(format!("promises {width}x{height} pixels, which {length} bytes can't hold")) }
@@ -159,6 +160,11 @@ fn png_bits_per_pixel(bytes: &[u8]) -> u64 {
         _ => 1,
     };
     depth * channels
+}
+
+/// Some decoders end their messages with a line break.
+fn undecodable(error: &image::ImageError) -> String {
+    format!("can't be decoded: {}", error.to_string().trim())
 }
 
 fn reader(bytes: &[u8], format: ImageFormat) -> ImageReader<Cursor<&[u8]>> {
@@ -197,7 +203,7 @@ fn decode_all(encoded: &[Encoded<'_>]) -> Vec<Result<Image, String>> {
 }
 
 fn decode_one(image: &Encoded<'_>) -> Result<Image, String> {
-    let decoded: DynamicImage = reader(&image.bytes, image.format).decode().map_err(|error| format!("can't be decoded: {error}"))?;
+    let decoded: DynamicImage = reader(&image.bytes, image.format).decode().map_err(|error| undecodable(&error))?;
     let rgba = decoded.into_rgba8();
     let (width, height) = rgba.dimensions();
     Ok(Image { name: image.source.name.clone(), width, height, rgba: rgba.into_raw().into() })

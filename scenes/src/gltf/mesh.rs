@@ -157,7 +157,12 @@ fn read_primitive<'a>(json: &Json<'_>, accessors: &'a [Option<Accessor<'a>>], ma
         && position.is_implied()
     {
         let problem = format!("its vertices are only in the extension {name}, which is not supported");
-        json.report().error("gltf::unsupported-extension", json.place(), problem, "export the file without mesh compression, or decompress it");
+        json.report().error(
+            "gltf::unsupported-extension",
+            json.place(),
+            problem,
+            "export the file without mesh compression, or decompress it",
+        );
         return None;
     }
     let get = |name: &str| found.get(name).and_then(|entry| entry.as_ref()).map(|(_, accessor)| *accessor);

@@ -117,7 +117,7 @@ fn read(container: container::Container, folder: &Folder, report: &Report) -> Op
     }
     let buffers = buffer::read_buffers(&root, container.binary, folder);
     let views = buffer::read_views(&root, &buffers);
-    let accessors = accessor::read_accessors(&root, &views);
+    let accessors = accessor::read_accessors(&root, &views, buffer::total(&buffers));
     let images = image::read_images(&root, &views);
     let textures = texture::read_textures(&root, images.len());
     let materials = material::read_materials(&root, &textures);

@@ -174,8 +174,8 @@ fn colours_and_alpha() {
     assert_eq!(four.vertices[0].color, [255, 0, 0, 0]);
 }
 
-/// A file with an image that is never decoded, since an error stops it first, or with a 1x1 PNG.
-fn textured(material: Value) -> File {
+/// A square with one material, whose texture is one pixel.
+fn textured(material: &Value) -> File {
     let mut png = Vec::new();
     let pixel = ::image::RgbaImage::from_pixel(1, 1, ::image::Rgba([128, 128, 255, 255]));
     pixel.write_to(&mut std::io::Cursor::new(&mut png), ::image::ImageFormat::Png).unwrap();
@@ -183,13 +183,13 @@ fn textured(material: Value) -> File {
     let view = file.view(&png);
     file.set("/images", json!([{"bufferView": view, "mimeType": "image/png"}]))
         .set("/textures", json!([{"source": 0}]))
-        .set("/materials", json!([material]))
+        .set("/materials", json!([material.clone()]))
         .set("/meshes/0/primitives/0/material", 0.into())
 }
 
 #[test]
 fn tangents_follow_the_texture_coordinates() {
-    let normal_mapped = || textured(json!({"normalTexture": {"index": 0}}));
+    let normal_mapped = || textured(&json!({"normalTexture": {"index": 0}}));
     let mesh = normal_mapped().attribute("TEXCOORD_0", "VEC2", &SQUARE_UVS).mesh();
     assert_eq!(mesh.vertices.len(), 4);
     for vertex in &mesh.vertices {
@@ -213,7 +213,7 @@ fn too_many_triangles_around_a_vertex_cost_no_stack() {
     }
     let count = positions.len() / 3;
     let uvs: Vec<f32> = positions.chunks(3).flat_map(|p| [p[0], p[1]]).collect();
-    let mut file = textured(json!({"normalTexture": {"index": 0}})).set("/meshes/0/primitives/0/mode", 6.into());
+    let mut file = textured(&json!({"normalTexture": {"index": 0}})).set("/meshes/0/primitives/0/mode", 6.into());
     let indices: Vec<u32> = (0..=around).collect();
     let view = file.view(bytemuck::cast_slice(&indices));
     let accessor = file.accessor(json!({"bufferView": view, "componentType": 5125, "type": "SCALAR", "count": count}));
@@ -227,8 +227,9 @@ fn too_many_triangles_around_a_vertex_cost_no_stack() {
 
 #[test]
 fn any_two_sets_of_texture_coordinates_are_kept() {
-    let material = json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 3}}, "emissiveTexture": {"index": 0, "texCoord": 1}});
-    let file = textured(material).attribute("TEXCOORD_1", "VEC2", &[0.1; 8]).attribute("TEXCOORD_3", "VEC2", &[0.3; 8]);
+    let material =
+        json!({"pbrMetallicRoughness": {"baseColorTexture": {"index": 0, "texCoord": 3}}, "emissiveTexture": {"index": 0, "texCoord": 1}});
+    let file = textured(&material).attribute("TEXCOORD_1", "VEC2", &[0.1; 8]).attribute("TEXCOORD_3", "VEC2", &[0.3; 8]);
     let asset = file.load().unwrap().asset;
     let set = |texture: Option<crate::asset::TextureUse>| texture.unwrap().uv_set;
     assert_eq!((set(asset.materials[0].base_color_texture), set(asset.materials[0].emissive_texture)), (1, 0));
@@ -240,7 +241,7 @@ fn any_two_sets_of_texture_coordinates_are_kept() {
 fn texture_transforms_scale_then_rotate_then_move() {
     let transform = json!({"offset": [0.5, 0.25], "scale": [2.0, 4.0], "rotation": std::f32::consts::FRAC_PI_2, "texCoord": 1});
     let info = json!({"index": 0, "extensions": {"KHR_texture_transform": transform}});
-    let file = textured(json!({"pbrMetallicRoughness": {"baseColorTexture": info}})).attribute("TEXCOORD_1", "VEC2", &SQUARE_UVS);
+    let file = textured(&json!({"pbrMetallicRoughness": {"baseColorTexture": info}})).attribute("TEXCOORD_1", "VEC2", &SQUARE_UVS);
     let texture = file.load().unwrap().asset.materials[0].base_color_texture.unwrap();
     assert_eq!(texture.uv_set, 1);
     assert!(texture.transformed(glam::Vec2::new(1.0, 0.0)).abs_diff_eq(glam::Vec2::new(0.5, -1.75), 1e-6));
@@ -279,7 +280,8 @@ fn deep_and_broken_json_is_an_error() {
 #[test]
 fn a_chain_of_a_hundred_thousand_nodes_costs_no_stack() {
     let count = 100_000;
-    let nodes: Vec<Value> = (0..count).map(|node| if node + 1 < count { json!({"children": [node + 1]}) } else { json!({"mesh": 0}) }).collect();
+    let nodes: Vec<Value> =
+        (0..count).map(|node| if node + 1 < count { json!({"children": [node + 1]}) } else { json!({"mesh": 0}) }).collect();
     let loaded = square().indices(&[0, 1, 2]).set("/nodes", nodes.into()).load().unwrap();
     assert_eq!(loaded.asset.nodes.len(), count);
 }

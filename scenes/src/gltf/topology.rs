@@ -9,17 +9,20 @@ use super::report::Report;
 /// Triangles and vertices that all meshes of a file together may have.
 const MOST_TRIANGLES: usize = 1 << 24;
 const MOST_VERTICES: usize = 1 << 24;
+/// Elements that morph targets and skins may read: vertices times targets, and times sets of joints.
+const MOST_DEFORMED: usize = 1 << 28;
 
 /// What is left of the limits.
 pub(super) struct Budget {
     triangles: usize,
     vertices: usize,
+    deformed: usize,
 }
 
 impl Budget {
     /// The limits for one file.
     pub(super) fn new() -> Budget {
-        Budget { triangles: MOST_TRIANGLES, vertices: MOST_VERTICES }
+        Budget { triangles: MOST_TRIANGLES, vertices: MOST_VERTICES, deformed: MOST_DEFORMED }
     }
 
     /// Takes triangles, or reports that there are too many.
@@ -30,6 +33,11 @@ impl Budget {
     /// Takes vertices, or reports that there are too many.
     pub(super) fn take_vertices(&mut self, count: usize, place: &str, report: &Report) -> Option<()> {
         take(&mut self.vertices, count, MOST_VERTICES, "vertices", place, report)
+    }
+
+    /// Takes elements of morph targets and skins, or reports that there are too many.
+    pub(super) fn take_deformed(&mut self, count: usize, place: &str, report: &Report) -> Option<()> {
+        take(&mut self.deformed, count, MOST_DEFORMED, "morphed or skinned elements", place, report)
     }
 }
 
@@ -57,7 +65,7 @@ pub(super) fn triangles(primitive: &Primitive<'_>, budget: &mut Budget, report: 
         report.warning("gltf::no-triangle", place, format_args!("has {count} corners, too few for a triangle; it is left out"), "");
         return None;
     }
-    if primitive.mode == Mode::List && count % 3 != 0 {
+    if primitive.mode == Mode::List && !count.is_multiple_of(3) {
         report.warning("gltf::odd-corners", place, format_args!("has {count} corners, not a multiple of three; the rest is ignored"), "");
     }
     budget.take_triangles(triangles, place, report)?;
