@@ -151,10 +151,6 @@ fn every_file_meets_its_expectation() {
         let result = load_entry(&assets, &name);
         let took = start.elapsed();
         assert!(took < LONGEST, "{name} took {took:?}");
-        if std::env::var_os("LUMINAIRE_VERBOSE").is_some() {
-            let text = result.as_ref().map_or_else(|errors| messages(errors), |loaded| messages(&loaded.warnings));
-            println!("{name} ({expect}): {} in {took:?}\n{text}", if result.is_ok() { "loaded" } else { "refused" });
-        }
         match &result {
             Ok(loaded) => check_guarantees(&name, &loaded.asset),
             Err(errors) => {

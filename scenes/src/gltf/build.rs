@@ -84,8 +84,14 @@ impl<'p> Builder<'p> {
             };
             if source.mesh.is_some() {
                 let meshes = self.add_mesh(index, &globals);
-                // A skin places its mesh by itself.
-                if source.skin.is_some() { skinned.push((source.name.clone(), meshes)) } else { node.meshes = meshes }
+                // A skin places its mesh by itself, if the mesh has joints.
+                let influenced =
+                    |mesh: usize| parts.meshes.get(mesh).is_some_and(|mesh| mesh.primitives.iter().any(|p| !p.influences.is_empty()));
+                if source.skin.is_some() && source.mesh.is_some_and(influenced) {
+                    skinned.push((source.name.clone(), meshes))
+                } else {
+                    node.meshes = meshes
+                }
             }
             numbers.insert(index, self.asset.nodes.len());
             self.asset.nodes.push(node);
