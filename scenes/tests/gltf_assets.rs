@@ -119,8 +119,7 @@ fn check_material(name: &str, material: &Material, images: usize) {
     let unit = [material.metallic, material.roughness, material.occlusion_strength, material.specular];
     assert!(unit.iter().chain(&material.base_color).all(|factor| (0.0..=1.0).contains(factor)), "{name}: {material:?}");
     let open = material.emissive.iter().chain(&material.specular_color).chain([&material.ior]);
-    assert!(open.into_iter().all(|value| value.is_finite() && *value >= 0.0), "{name}: {material:?}");
-    assert!(material.normal_scale.is_finite(), "{name}");
+    assert!(open.into_iter().all(|value| value.is_finite() && *value >= 0.0) && material.normal_scale.is_finite(), "{name}: {material:?}");
     for texture in textures(material).into_iter().flatten() {
         assert!(texture.image < images && texture.uv_set < 2, "{name}: {texture:?}");
         assert!(texture.transform.as_flattened().iter().all(|value| value.is_finite()), "{name}");
@@ -376,7 +375,6 @@ fn damaged_files_never_panic() {
     let folder = tempfile::tempdir().unwrap();
     let mut state = 1_u64;
     let mut random = |below: usize| {
-        // Knuth's MMIX generator; the high bits are the good ones.
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
         (state >> 33) as usize % below
     };

@@ -88,9 +88,9 @@ impl<'p> Builder<'p> {
                 let influenced =
                     |mesh: usize| parts.meshes.get(mesh).is_some_and(|mesh| mesh.primitives.iter().any(|p| !p.influences.is_empty()));
                 if source.skin.is_some() && source.mesh.is_some_and(influenced) {
-                    skinned.push((source.name.clone(), meshes))
+                    skinned.push((source.name.clone(), meshes));
                 } else {
-                    node.meshes = meshes
+                    node.meshes = meshes;
                 }
             }
             numbers.insert(index, self.asset.nodes.len());
