@@ -1,1 +1,3 @@
 //! placeholder
+pub mod asset;
+pub mod gltf;
