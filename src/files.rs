@@ -36,6 +36,14 @@ impl DiskFiles {
         shader_folders.push(PathBuf::from("shaders"));
         DiskFiles { shader_folders }
     }
+
+    /// Files for a shader by itself: `name` is the end of `path`, and imports are looked up where `path` begins.
+    pub fn for_shader(path: &Path, name: &str) -> DiskFiles {
+        let depth = Path::new(name).components().count();
+        let folder = path.ancestors().nth(depth).map(Path::to_owned).unwrap_or_default();
+        let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
+        DiskFiles { shader_folders: vec![folder] }
+    }
 }
 
 impl Files for DiskFiles {

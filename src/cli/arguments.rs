@@ -39,6 +39,9 @@ pub(crate) struct RenderArguments {
     /// The scene: a .gltf, .glb or scene .ron file
     #[arg(long)]
     pub scene: String,
+    /// The folder that the scene's files may come from; the scene file's own if not given
+    #[arg(long, value_name = "DIR")]
+    pub asset_root: Option<PathBuf>,
     /// The image to write: .png holds the output `color`, .exr the output `radiance`
     #[arg(short = 'o', value_name = "FILE")]
     pub file: PathBuf,
