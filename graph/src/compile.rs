@@ -83,5 +83,5 @@ fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<D
     warnings.extend(problems);
     let lifetimes = lifetimes(&bound, &schedule);
     let allocation = allocate(&bound, &schedule, &lifetimes, input.device)?;
-    Ok(assemble(bound, schedule, lifetimes, allocation, input.pipeline))
+    Ok(assemble(bound, schedule, lifetimes, allocation, input.pipeline, input.output))
 }
