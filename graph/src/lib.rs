@@ -2,6 +2,7 @@
 pub mod bind;
 pub mod device;
 pub mod diagnostic;
+pub mod execute;
 pub mod expand;
 pub mod format;
 pub mod plan;
