@@ -16,6 +16,7 @@ pub mod compile;
 pub mod device;
 pub mod diagnostic;
 pub mod dump;
+pub mod execute;
 pub mod expand;
 pub mod expression;
 pub mod format;
