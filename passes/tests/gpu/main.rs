@@ -2,6 +2,9 @@
 //!
 //! Without a Vulkan device the tests that need one are shown as ignored; where `CI` is set, its absence is a failure.
 
+// Tests without the harness of `cargo test`, which clippy does not know for tests.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
+
 mod clear;
 mod compute;
 mod copy;
@@ -47,6 +50,8 @@ fn checks() -> Vec<(&'static str, Check)> {
         ("fullscreen::locations_may_go_nowhere", fullscreen::locations_may_go_nowhere),
         ("fullscreen::blending", fullscreen::blending),
         ("fullscreen::views_of_mips_and_layers", fullscreen::views_of_mips_and_layers),
+        ("fullscreen::built_in_samplers", fullscreen::built_in_samplers),
+        ("fullscreen::four_samples", fullscreen::four_samples),
         ("compute::fills_a_volume", compute::fills_a_volume),
         ("compute::buffers_live_in_arenas", compute::buffers_live_in_arenas),
         ("compute::frames_are_equal_and_counted", compute::frames_are_equal_and_counted),
@@ -62,6 +67,7 @@ fn checks() -> Vec<(&'static str, Check)> {
         ("materials::textures_follow_batches", materials::textures_follow_batches),
         ("materials::tables_are_updated", materials::tables_are_updated),
         ("problems::validation_names_the_pass", problems::validation_names_the_pass),
+        ("problems::a_lost_device_is_an_error", problems::lost),
         ("problems::an_output_of_another_name", problems::an_output_of_another_name),
     ]
 }
@@ -71,6 +77,7 @@ fn noop_checks() -> Vec<(&'static str, fn())> {
         ("noop::a_plan_prepares_and_runs", problems::noop_runs),
         ("noop::limits_are_checked_first", problems::noop_limits),
         ("noop::the_budget_is_checked_first", problems::noop_budget),
+        ("noop::a_lost_device_is_an_error", problems::noop_lost),
         ("noop::scenes_are_checked", problems::noop_scene),
         ("noop::validation_names_every_pass", problems::noop_validation),
     ]

@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use luminaire_graph::plan::{BindingTarget, BuiltinSampler, SampleType, Stages};
+use luminaire_graph::plan::{BindingTarget, Stages};
 use luminaire_graph::published::{
     DrawBatch, MaterialBinding, PublishedSampler, PublishedTexture, PublishedWrap, TableKind, TableSchema, ViewKind, ViewRequest,
 };
@@ -10,7 +10,7 @@ use luminaire_graph::syntax::document::CullDoc;
 use luminaire_passes::Gpu;
 
 use crate::draw::{batch, draw, draw_list, geometry};
-use crate::support::{ATTACHED, Builder, assert_near, part, read, shape, target};
+use crate::support::{ATTACHED, Builder, assert_near, read, shape};
 
 const TEXTURED: &str = "
 var<storage, read> instance_slots: array<u32>;
@@ -116,33 +116,4 @@ pub(crate) fn tables_are_updated(gpu: &Gpu) {
     let problems = executor.update_scene(Arc::new(scene)).unwrap_err();
     assert_eq!(problems[0].code, "execute::missing-table");
     executor.render_frame().expect("the old scene still stands");
-}
-
-/// The built-in samplers together with a comparison.
-#[allow(dead_code)]
-pub(crate) fn samplers() -> Builder {
-    let mut builder = Builder::new();
-    let color = builder.texture("color", shape("rgba8unorm"), ATTACHED);
-    let mut sampled = ATTACHED;
-    sampled.sampled = true;
-    let depth = builder.texture("depth", shape("depth32float"), sampled);
-    let shader = builder.shader(
-        "samplers.wgsl",
-        "var image: texture_depth_2d; var compare_less: sampler_comparison; var nearest_clamp: sampler;
-        struct Out { @location(0) color: vec4<f32> }
-        @fragment fn shade(@location(0) uv: vec2<f32>) -> Out {
-            return Out(vec4<f32>(textureSampleCompareLevel(image, compare_less, uv, 0.25), textureSample(image, nearest_clamp, uv), 0.0, 1.0));
-        }",
-    );
-    builder.fullscreen(
-        "samplers",
-        shader,
-        vec![target(part(color, 0, 0), "rgba8unorm")],
-        vec![
-            ("image", BindingTarget::Texture { view: part(depth, 0, 0), sample: SampleType::Depth, multisampled: false }),
-            ("compare_less", BindingTarget::Sampler(BuiltinSampler::CompareLess)),
-            ("nearest_clamp", BindingTarget::Sampler(BuiltinSampler::NearestClamp)),
-        ],
-    );
-    builder
 }

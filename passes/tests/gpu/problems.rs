@@ -77,7 +77,7 @@ pub(crate) fn noop_runs() {
     let stats = executor.render_frame().expect("a frame");
     assert_eq!((stats.counts.draw_calls, stats.times), (1, None));
     assert_eq!(executor.read_output("color").expect("an image").bytes.len(), 256);
-    crate::materials::samplers().render(&gpu);
+    crate::fullscreen::samplers().render(&gpu);
 }
 
 pub(crate) fn noop_limits() {
@@ -130,4 +130,22 @@ pub(crate) fn noop_scene() {
 
 pub(crate) fn noop_validation() {
     validation_names_the_pass(&noop(DeviceFacts::webgpu_defaults()));
+}
+
+/// The device that all tests share must stay, so this one opens another.
+pub(crate) fn lost(_: &Gpu) {
+    lose(&Gpu::open(&GpuOptions::default()).expect("another device"));
+}
+
+pub(crate) fn noop_lost() {
+    lose(&noop(DeviceFacts::webgpu_defaults()));
+}
+
+fn lose(gpu: &Gpu) {
+    let mut executor = gradient().prepare(gpu);
+    gpu.device().destroy();
+    let problems = executor.render_frame().unwrap_err();
+    assert_eq!(problems[0].code, "execute::device-lost", "{problems:#?}");
+    assert!(executor.read_output("color").is_err());
+    assert!(Executor::new(gpu, Arc::new(gradient().plan), &Default::default(), Arc::default()).is_err());
 }
