@@ -166,7 +166,16 @@ impl Gpu {
 
     /// Waits until the device has done all that was submitted.
     pub(crate) fn wait(&self) -> Result<(), Diagnostic> {
-        let polled = self.device.poll(wgpu::PollType::wait_indefinitely());
+        self.poll(wgpu::PollType::wait_indefinitely())
+    }
+
+    /// Whether the device still stands. wgpu takes work for a lost device in silence and tells only those who poll.
+    pub(crate) fn check_alive(&self) -> Result<(), Diagnostic> {
+        self.poll(wgpu::PollType::Poll)
+    }
+
+    fn poll(&self, poll: wgpu::PollType) -> Result<(), Diagnostic> {
+        let polled = self.device.poll(poll);
         if let Some(lost) = self.errors.lost() {
             return Err(lost);
         }

@@ -131,9 +131,12 @@ impl Subject {
     }
 }
 
+/// Lines of wgpu's messages that say nothing.
+const FRAME: [&str; 3] = ["", "Validation Error", "Caused by:"];
+
 /// wgpu writes a chain of causes over several lines: the last one says what is wrong, the others where.
 fn with_lines(subject: &Subject, code: &'static str, lead: &str, description: &str) -> Diagnostic {
-    let mut lines: Vec<&str> = description.lines().map(str::trim).filter(|line| !line.is_empty()).collect();
+    let mut lines: Vec<&str> = description.lines().map(str::trim).filter(|line| !FRAME.contains(line)).collect();
     let last = lines.pop().unwrap_or("no reason given");
     lines.into_iter().fold(subject.error(code, format!("{lead}: {last}")), |diagnostic, line| diagnostic.note(line.to_owned()))
 }

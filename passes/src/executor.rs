@@ -54,7 +54,10 @@ impl Executor {
         let data = SceneData::new(gpu, &plan, schema, scene)?;
         let timing = Timing::new(gpu, plan.steps.len()).map_err(|problem| vec![problem])?;
         let mut backend = WgpuBackend::new(Store::new(gpu.clone(), schema.clone(), data), timing);
-        execute::prepare(&plan, &mut backend)?;
+        let prepared = execute::prepare(&plan, &mut backend);
+        // A lost device may raise errors everywhere; the loss explains them.
+        gpu.check_alive().map_err(|problem| vec![problem])?;
+        prepared?;
         Ok(Executor { plan, backend })
     }
 

@@ -153,7 +153,7 @@ impl Pipelines {
             })
             .collect();
         let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
-            label: None,
+            label: Some(&subject.what),
             layout: Some(&layouts.pipeline(device, key.layouts)),
             vertex,
             primitive: wgpu::PrimitiveState { front_face: key.front_face, cull_mode: key.cull, ..wgpu::PrimitiveState::default() },
@@ -186,7 +186,7 @@ impl Pipelines {
         }
         let module = self.module(device, plan, subject, key.shader)?;
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-            label: None,
+            label: Some(&subject.what),
             layout: Some(&layouts.pipeline(device, key.layouts)),
             module: &module,
             entry_point: Some(&key.entry),

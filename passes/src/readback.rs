@@ -2,6 +2,8 @@
 //!
 //! Guarantee: the same plan and scene give the same bytes; rows come back without the padding that copies need.
 
+use std::time::Duration;
+
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::expand::types::Dimension;
 use luminaire_graph::format::Format;
@@ -12,6 +14,10 @@ use crate::device::Gpu;
 use crate::errors::{Subject, catch};
 use crate::texel;
 use crate::textures::Memories;
+
+/// How often a callback that is late is asked for, and for how long each time: ten seconds together.
+const CALLBACK_TRIES: u32 = 1000;
+const CALLBACK_PAUSE: Duration = Duration::from_millis(10);
 
 /// An image that was read back. Row 0 is the top.
 #[derive(Debug, Clone, PartialEq)]
@@ -143,11 +149,19 @@ pub(crate) fn map(gpu: &Gpu, buffer: &wgpu::Buffer, bytes: u64) -> Result<Vec<u8
         // The receiver lives until the end of this function; a later answer interests nobody.
         let _ = sender.send(result);
     });
-    gpu.wait()?;
-    match receiver.try_recv() {
-        Ok(Ok(())) => {}
-        Ok(Err(error)) => return Err(failed(error.to_string())),
-        Err(_) => return Err(failed("the device did not answer".to_owned())),
+    // Another thread that waits for the same device may be the one that calls back, a moment after our own wait is over.
+    let mut answer = None;
+    for _ in 0..CALLBACK_TRIES {
+        gpu.wait()?;
+        if let Ok(result) = receiver.recv_timeout(CALLBACK_PAUSE) {
+            answer = Some(result);
+            break;
+        }
+    }
+    match answer {
+        Some(Ok(())) => {}
+        Some(Err(error)) => return Err(failed(error.to_string())),
+        None => return Err(failed("the device did not answer".to_owned())),
     }
     let content = slice.get_mapped_range().map(|view| view.to_vec()).map_err(|error| failed(error.to_string()));
     buffer.unmap();

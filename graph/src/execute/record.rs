@@ -99,3 +99,131 @@ fn value_text(value: &ClearValue) -> String {
         ClearValue::Uint([r, g, b, a]) => format!("uint ({r}, {g}, {b}, {a})"),
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::execute::{execute, execute_due, prepare};
+    use crate::expand::types::PassId;
+    use crate::plan::{MemoryFigures, Placement, PlannedResource, PlannedShape, Step, Usage};
+    use crate::reflect::interface::ViewDimension;
+    use crate::source::Span;
+
+    fn view(resource: u32) -> PartView {
+        PartView { resource: ResourceId(resource), mips: 0..1, layers: 0..1, dimension: ViewDimension::D2 }
+    }
+
+    fn step(name: &str, kind: StepKind) -> Step {
+        Step {
+            pass: PassId(0),
+            name: name.to_owned(),
+            span: Span::NOWHERE,
+            shader: None,
+            kind,
+            bindings: Vec::new(),
+            constants: Vec::new(),
+            clears: Vec::new(),
+            uses: Vec::new(),
+        }
+    }
+
+    /// Two buffers in one arena; the second step is cleared first.
+    fn plan() -> Plan {
+        let resource = |(name, offset): (&str, u64)| PlannedResource {
+            name: name.to_owned(),
+            span: Span::NOWHERE,
+            shape: PlannedShape::Buffer(16),
+            usage: Usage::default(),
+            bytes: 16,
+            lifetime: 0..2,
+            placement: Some(Placement { memory: MemoryId(0), offset }),
+            retained: None,
+        };
+        let holders = vec![ResourceId(0), ResourceId(1)];
+        let mut copy = step("copy", StepKind::Copy { source: view(0), target: view(1) });
+        copy.clears.push((view(1), ClearValue::Uint([1, 2, 3, 4])));
+        Plan {
+            name: "test.ron".to_owned(),
+            doc: String::new(),
+            extent: [1, 1],
+            params: Vec::new(),
+            resources: [("a", 0), ("b", 256)].map(resource).to_vec(),
+            memories: vec![Memory { kind: MemoryKind::Arena, usage: Usage::default(), bytes: 272, holders }],
+            shaders: Vec::new(),
+            steps: vec![step("reset", StepKind::Clear { target: view(0), value: ClearValue::Zero }), copy],
+            culled: Vec::new(),
+            views: Vec::new(),
+            draw_lists: Vec::new(),
+            outputs: Vec::new(),
+            figures: MemoryFigures::default(),
+            requirements: Vec::new(),
+        }
+    }
+
+    #[test]
+    fn verbs_come_in_the_promised_order() {
+        let plan = plan();
+        let mut recorder = Recorder::default();
+        prepare(&plan, &mut recorder).unwrap();
+        execute(&plan, &mut recorder).unwrap();
+        let wanted = "create memory 0: arena of 272 bytes for a, b\n\
+            prepare reset\n\
+            prepare copy\n\
+            run reset: clear a.mip(0).layer(0) to zero\n\
+            clear b.mip(0).layer(0) to uint (1, 2, 3, 4) for copy\n\
+            run copy: copy a.mip(0).layer(0) to b.mip(0).layer(0)\n\
+            submit\n";
+        assert_eq!(recorder.text(), wanted);
+    }
+
+    #[test]
+    fn only_what_is_due_runs() {
+        let mut recorder = Recorder::default();
+        execute_due(&plan(), [1], &mut recorder).unwrap();
+        assert_eq!(recorder.lines.len(), 3);
+        assert!(recorder.lines[0].ends_with("for copy"));
+        let mut idle = Recorder::default();
+        execute_due(&plan(), [], &mut idle).unwrap();
+        assert_eq!(idle.text(), "");
+    }
+
+    /// Fails at everything.
+    struct Broken(Vec<&'static str>);
+
+    impl Backend for Broken {
+        type Error = &'static str;
+
+        fn create_memory(&mut self, _: &Plan, _: MemoryId) -> Result<(), &'static str> {
+            Ok(())
+        }
+
+        fn prepare_step(&mut self, _: &Plan, _: usize) -> Result<(), &'static str> {
+            Err("prepare")
+        }
+
+        fn clear_part(&mut self, _: &Plan, _: usize, _: usize) -> Result<(), &'static str> {
+            Ok(())
+        }
+
+        fn run_step(&mut self, _: &Plan, _: usize) -> Result<(), &'static str> {
+            Err("run")
+        }
+
+        fn submit(&mut self, _: &Plan) -> Result<(), &'static str> {
+            self.0.push("submit");
+            Ok(())
+        }
+
+        fn abandon(&mut self) {
+            self.0.push("abandon");
+        }
+    }
+
+    #[test]
+    fn all_errors_of_preparation_and_the_first_of_a_frame() {
+        let mut broken = Broken(Vec::new());
+        assert_eq!(prepare(&plan(), &mut broken), Err(vec!["prepare"; 2]));
+        assert_eq!(execute(&plan(), &mut broken), Err("run"));
+        assert_eq!(broken.0, ["abandon"]);
+    }
+}
