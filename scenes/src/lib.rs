@@ -4,6 +4,7 @@
 //! world into the tables, textures and draw lists that shaders ask for by name. Nothing here knows a GPU or a pipeline.
 
 pub mod asset;
+pub mod gltf;
 pub mod primitive;
 pub mod publish;
 pub mod scene_file;

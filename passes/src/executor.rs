@@ -1,0 +1,141 @@
+//! A plan and a scene on a device: prepared once, rendered frame after frame.
+//!
+//! Guarantees: everything is checked and created by [`Executor::new`]; a frame creates nothing but its command buffer; the
+//! same plan and scene give the same images. After an error the executor may be dropped or, unless the device was lost, used
+//! on.
+
+use std::sync::Arc;
+
+use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
+use luminaire_graph::execute::{self, Backend};
+use luminaire_graph::plan::{PartView, Plan, PlannedShape, StepKind};
+use luminaire_graph::published::{PublishedScene, PublishedSchema};
+
+use crate::backend::WgpuBackend;
+use crate::check;
+use crate::device::Gpu;
+use crate::readback::{self, ReadImage};
+use crate::scene_data::SceneData;
+use crate::store::Store;
+use crate::timing::{FrameCounts, StepTime, Timing};
+
+/// A prepared plan.
+#[derive(Debug)]
+pub struct Executor {
+    plan: Arc<Plan>,
+    backend: WgpuBackend,
+}
+
+/// What a frame did and cost.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct FrameStats {
+    /// Counts of this frame.
+    pub counts: FrameCounts,
+    /// GPU time of the passes that have one, in the order of the plan; `None` if the device was not opened with timing or
+    /// can't measure.
+    pub times: Option<Vec<StepTime>>,
+    /// Pipelines created since the executor was.
+    pub pipelines_created: u64,
+    /// Bind groups created since the executor was.
+    pub bind_groups_created: u64,
+}
+
+impl Executor {
+    /// Checks the plan against the device and the scene against the plan, and creates everything.
+    ///
+    /// Errors, all at once where they don't follow from each other: `execute::too-large`, `execute::over-budget`, what is wrong
+    /// with the scene (`execute::missing-table` and others), and per pass `execute::validation` (wgpu refuses it),
+    /// `execute::out-of-memory`, `execute::internal`, `execute::device-lost`.
+    pub fn new(gpu: &Gpu, plan: Arc<Plan>, schema: &PublishedSchema, scene: Arc<PublishedScene>) -> Result<Executor, Vec<Diagnostic>> {
+        let problems = check::check(&plan, &scene, gpu.facts());
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let data = SceneData::new(gpu, &plan, schema, scene)?;
+        let timing = Timing::new(gpu, plan.steps.len()).map_err(|problem| vec![problem])?;
+        let mut backend = WgpuBackend::new(Store::new(gpu.clone(), schema.clone(), data), timing);
+        execute::prepare(&plan, &mut backend)?;
+        Ok(Executor { plan, backend })
+    }
+
+    /// The plan that it runs.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// Takes another state of the scene over. Equal bytes cost a comparison, other bytes of equal length are written in place;
+    /// bind groups are made anew only if a table changed its length or a texture changed. The scene must fit the same plan:
+    /// its draw lists and views are those that the plan asks for.
+    pub fn update_scene(&mut self, scene: Arc<PublishedScene>) -> Result<(), Vec<Diagnostic>> {
+        let Store { gpu, schema, scene: data, bind_groups, .. } = &mut self.backend.store;
+        let changed = data.update(gpu, &self.plan, schema, scene)?;
+        if changed.bound {
+            bind_groups.forget_materials();
+        }
+        let stale = |kind: &StepKind| match kind {
+            StepKind::Draw { .. } => changed.bound || changed.draws,
+            StepKind::Fullscreen { .. } | StepKind::Compute { .. } => changed.bound,
+            StepKind::Copy { .. } | StepKind::Clear { .. } => false,
+        };
+        let steps = self.plan.steps.iter().enumerate().filter(|(_, step)| stale(&step.kind));
+        let problems: Vec<Diagnostic> = steps.filter_map(|(index, _)| self.backend.prepare_step(&self.plan, index).err()).collect();
+        if problems.is_empty() { Ok(()) } else { Err(problems) }
+    }
+
+    /// Runs every step once.
+    pub fn render_frame(&mut self) -> Result<FrameStats, Vec<Diagnostic>> {
+        self.backend.begin_frame();
+        execute::execute(&self.plan, &mut self.backend).map_err(|problem| vec![problem])?;
+        let times = match &self.backend.timing {
+            Some(timing) => Some(timing.read(&self.backend.store.gpu).map_err(|problem| vec![problem])?),
+            None => None,
+        };
+        let named = |(step, milliseconds): (usize, f64)| StepTime { name: self.plan.steps[step].name.clone(), milliseconds };
+        Ok(FrameStats {
+            counts: self.backend.counts,
+            times: times.map(|times| times.into_iter().map(named).collect()),
+            pipelines_created: self.backend.store.pipelines.created(),
+            bind_groups_created: self.backend.store.bind_groups.created(),
+        })
+    }
+
+    /// Waits until the GPU has done all frames.
+    pub fn wait(&self) -> Result<(), Vec<Diagnostic>> {
+        self.backend.store.gpu.wait().map_err(|problem| vec![problem])
+    }
+
+    /// An output that is a texture: one mip level, all layers. Waits for the GPU. Errors: `execute::unknown-output`,
+    /// `execute::unreadable-output`.
+    pub fn read_output(&self, name: &str) -> Result<ReadImage, Vec<Diagnostic>> {
+        let store = &self.backend.store;
+        self.output(name)
+            .and_then(|part| readback::read_texture(&store.gpu, &self.plan, &store.memories, name, part))
+            .map_err(|problem| vec![problem])
+    }
+
+    /// An output that is a buffer, as bytes. Waits for the GPU. Errors as [`Executor::read_output`].
+    pub fn read_buffer(&self, name: &str) -> Result<Vec<u8>, Vec<Diagnostic>> {
+        let store = &self.backend.store;
+        self.output(name)
+            .and_then(|part| readback::read_bytes(&store.gpu, &self.plan, &store.memories, name, part))
+            .map_err(|problem| vec![problem])
+    }
+
+    /// A view of an output that is a texture, for those who draw beside the executor (a viewer).
+    pub fn output_view(&mut self, name: &str) -> Result<wgpu::TextureView, Vec<Diagnostic>> {
+        let part = self.output(name).map_err(|problem| vec![problem])?.clone();
+        let no_texture = || Diagnostic::error("execute::unreadable-output", format!("output `{name}` is no texture"));
+        if !matches!(self.plan.resources[part.resource.index()].shape, PlannedShape::Texture(..)) {
+            return Err(vec![no_texture()]);
+        }
+        self.backend.store.memories.view(&self.plan, &part).ok_or_else(|| vec![no_texture()])
+    }
+
+    fn output(&self, name: &str) -> Result<&PartView, Diagnostic> {
+        let outputs = &self.plan.outputs;
+        outputs.iter().find(|output| output.name == name).map(|output| &output.view).ok_or_else(|| {
+            Diagnostic::error("execute::unknown-output", format!("`{}` has no output `{name}`", self.plan.name))
+                .maybe_hint(did_you_mean(name, outputs.iter().map(|output| output.name.as_str())))
+        })
+    }
+}

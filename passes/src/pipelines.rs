@@ -1,0 +1,259 @@
+//! Shader modules and pipelines, each created once and shared by the steps that need the same.
+//!
+//! A loop over faces or lights unrolls to many steps with one pipeline between them. Keys hold every input of a pipeline, so
+//! that equal keys mean equal pipelines.
+
+use std::collections::HashMap;
+
+use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
+use luminaire_graph::format::Format;
+use luminaire_graph::plan::{Plan, Step, Targets};
+use luminaire_graph::published::VertexSchema;
+use luminaire_graph::syntax::document::{BlendDoc, CompareDoc};
+
+use crate::convert;
+use crate::errors::Subject;
+use crate::fullscreen;
+use crate::layouts::{GroupLayouts, Layouts};
+
+/// The stages before the fragment stage.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) enum VertexStage {
+    /// One triangle over all texels.
+    Fullscreen,
+    /// An entry point of the step's shader, with the attributes by location.
+    Scene { entry: String, attributes: Vec<String> },
+}
+
+/// Everything that a render pipeline is made from.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct RenderKey {
+    shader: Option<usize>,
+    constants: Vec<(String, u64)>,
+    layouts: GroupLayouts,
+    vertex: VertexStage,
+    fragment: Option<String>,
+    colors: Vec<Option<(Format, Option<BlendDoc>)>>,
+    depth: Option<(Format, bool, CompareDoc, i32, u32)>,
+    samples: u32,
+    front_face: wgpu::FrontFace,
+    cull: Option<wgpu::Face>,
+}
+
+/// Everything that a compute pipeline is made from.
+#[derive(Debug, Clone, PartialEq, Eq, Hash)]
+pub(crate) struct ComputeKey {
+    shader: Option<usize>,
+    constants: Vec<(String, u64)>,
+    layouts: GroupLayouts,
+    entry: String,
+}
+
+impl RenderKey {
+    pub(crate) fn new(
+        plan: &Plan,
+        step: &Step,
+        layouts: GroupLayouts,
+        vertex: VertexStage,
+        fragment: Option<&str>,
+        targets: &Targets,
+    ) -> RenderKey {
+        RenderKey {
+            shader: step.shader,
+            constants: constants(plan, step),
+            layouts,
+            vertex,
+            fragment: fragment.map(str::to_owned),
+            colors: targets.colors.iter().map(|color| color.as_ref().map(|color| (color.format, color.blend))).collect(),
+            depth: targets.depth.as_ref().map(|depth| {
+                // Formats of integers or with a fixed step take the bias as given; a slope is compared by its bits.
+                (depth.format, depth.write, depth.compare, depth.bias, depth.slope_bias.to_bits())
+            }),
+            samples: targets.samples,
+            front_face: wgpu::FrontFace::Ccw,
+            cull: None,
+        }
+    }
+
+    /// The same with another winding of front faces, and these faces left out.
+    pub(crate) fn with_faces(&self, front_face: wgpu::FrontFace, cull: Option<wgpu::Face>) -> RenderKey {
+        RenderKey { front_face, cull, ..self.clone() }
+    }
+}
+
+impl ComputeKey {
+    pub(crate) fn new(plan: &Plan, step: &Step, layouts: GroupLayouts, entry: &str) -> ComputeKey {
+        ComputeKey { shader: step.shader, constants: constants(plan, step), layouts, entry: entry.to_owned() }
+    }
+}
+
+/// Every module and pipeline made so far.
+#[derive(Debug, Default)]
+pub(crate) struct Pipelines {
+    modules: HashMap<usize, wgpu::ShaderModule>,
+    fullscreen: Option<wgpu::ShaderModule>,
+    render: HashMap<RenderKey, wgpu::RenderPipeline>,
+    compute: HashMap<ComputeKey, wgpu::ComputePipeline>,
+}
+
+impl Pipelines {
+    /// How many pipelines were created.
+    pub(crate) fn created(&self) -> u64 {
+        (self.render.len() + self.compute.len()) as u64
+    }
+
+    /// The pipeline of a key. Runs in the caller's error scope.
+    pub(crate) fn render(
+        &mut self,
+        device: &wgpu::Device,
+        plan: &Plan,
+        subject: &Subject,
+        schema: &VertexSchema,
+        layouts: &mut Layouts,
+        key: &RenderKey,
+    ) -> Result<wgpu::RenderPipeline, Diagnostic> {
+        if let Some(pipeline) = self.render.get(key) {
+            return Ok(pipeline.clone());
+        }
+        let module = self.module(device, plan, subject, key.shader)?;
+        let constants: Vec<(&str, f64)> = constant_refs(&key.constants);
+        let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
+        let attributes = match &key.vertex {
+            VertexStage::Fullscreen => Vec::new(),
+            VertexStage::Scene { attributes, .. } => vertex_attributes(subject, schema, attributes)?,
+        };
+        let buffers = [Some(wgpu::VertexBufferLayout {
+            array_stride: u64::from(schema.stride),
+            step_mode: wgpu::VertexStepMode::Vertex,
+            attributes: &attributes,
+        })];
+        let vertex = match &key.vertex {
+            VertexStage::Fullscreen => wgpu::VertexState {
+                module: self.fullscreen.get_or_insert_with(|| fullscreen::vertex_module(device)),
+                entry_point: Some(fullscreen::VERTEX_ENTRY),
+                compilation_options: wgpu::PipelineCompilationOptions::default(),
+                buffers: &[],
+            },
+            VertexStage::Scene { entry, attributes } => wgpu::VertexState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: options.clone(),
+                buffers: if attributes.is_empty() { &[] } else { &buffers },
+            },
+        };
+        let targets: Vec<Option<wgpu::ColorTargetState>> = key
+            .colors
+            .iter()
+            .map(|color| {
+                color.map(|(format, blend)| wgpu::ColorTargetState {
+                    format: convert::texture_format(format),
+                    blend: blend.map(convert::blend),
+                    write_mask: wgpu::ColorWrites::ALL,
+                })
+            })
+            .collect();
+        let pipeline = device.create_render_pipeline(&wgpu::RenderPipelineDescriptor {
+            label: None,
+            layout: Some(&layouts.pipeline(device, key.layouts)),
+            vertex,
+            primitive: wgpu::PrimitiveState { front_face: key.front_face, cull_mode: key.cull, ..wgpu::PrimitiveState::default() },
+            depth_stencil: key.depth.map(depth_state),
+            multisample: wgpu::MultisampleState { count: key.samples, ..wgpu::MultisampleState::default() },
+            fragment: key.fragment.as_ref().map(|entry| wgpu::FragmentState {
+                module: &module,
+                entry_point: Some(entry),
+                compilation_options: options,
+                targets: &targets,
+            }),
+            multiview_mask: None,
+            cache: None,
+        });
+        self.render.insert(key.clone(), pipeline.clone());
+        Ok(pipeline)
+    }
+
+    /// The pipeline of a key. Runs in the caller's error scope.
+    pub(crate) fn compute(
+        &mut self,
+        device: &wgpu::Device,
+        plan: &Plan,
+        subject: &Subject,
+        layouts: &mut Layouts,
+        key: &ComputeKey,
+    ) -> Result<wgpu::ComputePipeline, Diagnostic> {
+        if let Some(pipeline) = self.compute.get(key) {
+            return Ok(pipeline.clone());
+        }
+        let module = self.module(device, plan, subject, key.shader)?;
+        let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
+            label: None,
+            layout: Some(&layouts.pipeline(device, key.layouts)),
+            module: &module,
+            entry_point: Some(&key.entry),
+            compilation_options: wgpu::PipelineCompilationOptions { constants: &constant_refs(&key.constants), ..Default::default() },
+            cache: None,
+        });
+        self.compute.insert(key.clone(), pipeline.clone());
+        Ok(pipeline)
+    }
+
+    fn module(
+        &mut self,
+        device: &wgpu::Device,
+        plan: &Plan,
+        subject: &Subject,
+        shader: Option<usize>,
+    ) -> Result<wgpu::ShaderModule, Diagnostic> {
+        let found = shader.and_then(|index| plan.shaders.get(index).map(|shader| (index, shader)));
+        let Some((index, shader)) = found else {
+            return Err(subject.error("execute::no-shader", "it has no shader"));
+        };
+        let module = self.modules.entry(index).or_insert_with(|| {
+            device.create_shader_module(wgpu::ShaderModuleDescriptor {
+                label: Some(&shader.path),
+                source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned((*shader.module).clone())),
+            })
+        });
+        Ok(module.clone())
+    }
+}
+
+fn depth_state((format, write, compare, bias, slope): (Format, bool, CompareDoc, i32, u32)) -> wgpu::DepthStencilState {
+    wgpu::DepthStencilState {
+        format: convert::texture_format(format),
+        depth_write_enabled: Some(write),
+        depth_compare: Some(convert::compare(compare)),
+        stencil: wgpu::StencilState::default(),
+        bias: wgpu::DepthBiasState { constant: bias, slope_scale: f32::from_bits(slope), clamp: 0.0 },
+    }
+}
+
+/// Overrides under the keys by which pipelines take them: the `@id` where there is one, else the name. Values by their bits.
+fn constants(plan: &Plan, step: &Step) -> Vec<(String, u64)> {
+    let module = step.shader.and_then(|index| plan.shaders.get(index)).map(|shader| &shader.module);
+    let key = |name: &String| {
+        let id = module.and_then(|module| {
+            module.overrides.iter().find(|(_, declared)| declared.name.as_ref() == Some(name)).and_then(|(_, declared)| declared.id)
+        });
+        id.map_or_else(|| name.clone(), |id| id.to_string())
+    };
+    step.constants.iter().map(|(name, value)| (key(name), value.to_bits())).collect()
+}
+
+fn constant_refs(constants: &[(String, u64)]) -> Vec<(&str, f64)> {
+    constants.iter().map(|(key, bits)| (key.as_str(), f64::from_bits(*bits))).collect()
+}
+
+fn vertex_attributes(subject: &Subject, schema: &VertexSchema, names: &[String]) -> Result<Vec<wgpu::VertexAttribute>, Diagnostic> {
+    let attribute = |(location, name): (usize, &String)| match schema.attributes.get(name) {
+        Some(attribute) => Ok(wgpu::VertexAttribute {
+            format: convert::vertex_format(attribute.format),
+            offset: u64::from(attribute.offset),
+            shader_location: location as u32,
+        }),
+        None => Err(subject
+            .error("execute::missing-attribute", format!("the scene's vertices have no `{name}`"))
+            .maybe_hint(did_you_mean(name, schema.attributes.keys().map(String::as_str)))),
+    };
+    names.iter().enumerate().map(attribute).collect()
+}

@@ -1,0 +1,276 @@
+//! The published scene on the device: tables, views, geometry, material textures and samplers.
+//!
+//! Only what the plan names is uploaded. A new scene is compared with the one that stands: equal bytes are left alone, other
+//! bytes of equal length are written in place, and only a new length (or new textures) makes new objects.
+//!
+//! Accepted downside: a table that changes its length often makes bind groups anew often; scenes should pad such tables.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::plan::{BindingTarget, Plan, StepKind};
+use luminaire_graph::published::{PublishedSampler, PublishedScene, PublishedSchema, PublishedTexture, TableKind};
+
+use crate::device::Gpu;
+use crate::errors::{Subject, catch};
+use crate::samplers;
+use crate::scene_check;
+
+/// Uploads wait in host memory until they are submitted; this many bytes are let to wait.
+const UPLOAD_BATCH: usize = 64 << 20;
+
+/// Which parts of a scene a plan uses.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Needs {
+    /// Tables by name, and how they bind.
+    pub(crate) tables: BTreeMap<String, TableKind>,
+    /// Some step binds a view.
+    pub(crate) views: bool,
+    /// Some step draws.
+    pub(crate) geometry: bool,
+    /// Some step binds what materials bring.
+    pub(crate) materials: bool,
+}
+
+impl Needs {
+    pub(crate) fn of(plan: &Plan) -> Needs {
+        let mut needs = Needs::default();
+        for step in &plan.steps {
+            needs.geometry |= matches!(step.kind, StepKind::Draw { .. });
+            for binding in &step.bindings {
+                match &binding.target {
+                    BindingTarget::UniformTable(name) => {
+                        needs.tables.insert(name.clone(), TableKind::Uniform);
+                    }
+                    BindingTarget::StorageTable(name) => {
+                        needs.tables.insert(name.clone(), TableKind::Storage);
+                    }
+                    BindingTarget::View(_) => needs.views = true,
+                    BindingTarget::MaterialTexture(_) | BindingTarget::MaterialSampler(_) => needs.materials = true,
+                    _ => {}
+                }
+            }
+        }
+        needs
+    }
+}
+
+/// What a new scene changed.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Changed {
+    /// Objects that bind groups hold were replaced.
+    pub(crate) bound: bool,
+    /// Draw lists or materials differ.
+    pub(crate) draws: bool,
+}
+
+/// The scene that stands on the device.
+#[derive(Debug)]
+pub(crate) struct SceneData {
+    pub(crate) scene: Arc<PublishedScene>,
+    needs: Needs,
+    tables: BTreeMap<String, wgpu::Buffer>,
+    views: Vec<wgpu::Buffer>,
+    vertices: Option<wgpu::Buffer>,
+    indices: Option<wgpu::Buffer>,
+    textures: Vec<wgpu::TextureView>,
+    samplers: Vec<wgpu::Sampler>,
+}
+
+impl SceneData {
+    /// Checks and uploads a scene.
+    pub(crate) fn new(gpu: &Gpu, plan: &Plan, schema: &PublishedSchema, scene: Arc<PublishedScene>) -> Result<SceneData, Vec<Diagnostic>> {
+        let mut data = SceneData {
+            scene: Arc::default(),
+            needs: Needs::of(plan),
+            tables: BTreeMap::new(),
+            views: Vec::new(),
+            vertices: None,
+            indices: None,
+            textures: Vec::new(),
+            samplers: Vec::new(),
+        };
+        data.update(gpu, plan, schema, scene)?;
+        Ok(data)
+    }
+
+    /// Takes another scene over. After an error the old one stands.
+    pub(crate) fn update(
+        &mut self,
+        gpu: &Gpu,
+        plan: &Plan,
+        schema: &PublishedSchema,
+        scene: Arc<PublishedScene>,
+    ) -> Result<Changed, Vec<Diagnostic>> {
+        if Arc::ptr_eq(&self.scene, &scene) {
+            return Ok(Changed::default());
+        }
+        let problems = scene_check::check(plan, schema, &self.needs, &scene, &gpu.device.limits());
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let (changed, errors) = catch(&gpu.device, || self.upload(gpu, schema, &scene));
+        Subject::nowhere("uploading the scene").check(&errors).map_err(|problem| vec![problem])?;
+        self.scene = scene;
+        Ok(changed)
+    }
+
+    /// A table's buffer.
+    pub(crate) fn table(&self, name: &str) -> Option<&wgpu::Buffer> {
+        self.tables.get(name)
+    }
+
+    /// The buffer of a view's table.
+    pub(crate) fn view(&self, index: usize) -> Option<&wgpu::Buffer> {
+        self.views.get(index)
+    }
+
+    /// Vertices and indices.
+    pub(crate) fn geometry(&self) -> Option<(&wgpu::Buffer, &wgpu::Buffer)> {
+        self.vertices.as_ref().zip(self.indices.as_ref())
+    }
+
+    /// A material's texture, by its index in the scene.
+    pub(crate) fn texture(&self, index: usize) -> Option<&wgpu::TextureView> {
+        self.textures.get(index)
+    }
+
+    /// A material's sampler, by its index in the scene.
+    pub(crate) fn sampler(&self, index: usize) -> Option<&wgpu::Sampler> {
+        self.samplers.get(index)
+    }
+
+    fn upload(&mut self, gpu: &Gpu, schema: &PublishedSchema, new: &PublishedScene) -> Changed {
+        let old = Arc::clone(&self.scene);
+        let mut changed = Changed { bound: false, draws: old.draw_lists != new.draw_lists || old.materials != new.materials };
+        for (name, kind) in &self.needs.tables {
+            let Some(bytes) = new.tables.get(name) else { continue };
+            let stride = schema.tables.get(name).map_or(0, |table| table.stride);
+            let usage = if *kind == TableKind::Storage { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::UNIFORM };
+            let mut slot = self.tables.remove(name);
+            changed.bound |= put(gpu, &mut slot, name, old.tables.get(name).map(Vec::as_slice), bytes, u64::from(stride), usage);
+            self.tables.extend(slot.map(|buffer| (name.clone(), buffer)));
+        }
+        if self.needs.views {
+            changed.bound |= self.views.len() != new.views.len();
+            let stride = schema.tables.values().find(|table| table.kind == TableKind::View).map_or(0, |table| table.stride);
+            let mut slots: Vec<Option<wgpu::Buffer>> = self.views.drain(..).map(Some).collect();
+            slots.resize(new.views.len(), None);
+            for (index, (slot, bytes)) in slots.iter_mut().zip(&new.views).enumerate() {
+                let before = old.views.get(index).map(Vec::as_slice);
+                changed.bound |= put(gpu, slot, "view", before, bytes, u64::from(stride), wgpu::BufferUsages::UNIFORM);
+            }
+            self.views = slots.into_iter().flatten().collect();
+        }
+        if self.needs.geometry {
+            // Draws fetch these anew each frame, so that replacing them binds nothing.
+            put(gpu, &mut self.vertices, "vertices", Some(&old.vertices), &new.vertices, 4, wgpu::BufferUsages::VERTEX);
+            let (before, after) = (bytemuck::cast_slice(&old.indices), bytemuck::cast_slice(&new.indices));
+            put(gpu, &mut self.indices, "indices", Some(before), after, 4, wgpu::BufferUsages::INDEX);
+        }
+        if self.needs.materials {
+            changed.bound |= self.upload_textures(gpu, &old.textures, &new.textures);
+            changed.bound |= self.make_samplers(gpu, &old.samplers, &new.samplers);
+        }
+        changed
+    }
+
+    /// Whether anything was created.
+    fn upload_textures(&mut self, gpu: &Gpu, old: &[PublishedTexture], new: &[PublishedTexture]) -> bool {
+        if self.textures.len() == new.len() && old.len() == new.len() && old.iter().zip(new).all(|(old, new)| same_texture(old, new)) {
+            return false;
+        }
+        let mut waiting = 0;
+        self.textures = new
+            .iter()
+            .map(|texture| {
+                let created = create_texture(gpu, texture);
+                waiting += texture.mips.iter().map(Vec::len).sum::<usize>();
+                if waiting > UPLOAD_BATCH {
+                    gpu.queue.submit(None);
+                    waiting = 0;
+                }
+                created.create_view(&wgpu::TextureViewDescriptor::default())
+            })
+            .collect();
+        true
+    }
+
+    /// Whether anything was created.
+    fn make_samplers(&mut self, gpu: &Gpu, old: &[PublishedSampler], new: &[PublishedSampler]) -> bool {
+        if self.samplers.len() == new.len() && old == new {
+            return false;
+        }
+        self.samplers = new.iter().map(|sampler| samplers::published(&gpu.device, sampler)).collect();
+        true
+    }
+}
+
+/// Brings a buffer to new content. Whether a new one was created. `least` is the least size in bytes.
+fn put(
+    gpu: &Gpu,
+    slot: &mut Option<wgpu::Buffer>,
+    label: &str,
+    old: Option<&[u8]>,
+    new: &[u8],
+    least: u64,
+    usage: wgpu::BufferUsages,
+) -> bool {
+    // Uniform structs are rounded up to 16 bytes by the language; all else to what copies need.
+    let unit = if usage.contains(wgpu::BufferUsages::UNIFORM) { 16 } else { 4 };
+    let size = (new.len() as u64).max(least).max(4).next_multiple_of(unit);
+    let kept = slot.as_ref().filter(|buffer| buffer.size() == size).cloned();
+    let created = kept.is_none();
+    if !created && old == Some(new) {
+        return false;
+    }
+    let buffer = kept.unwrap_or_else(|| {
+        gpu.device.create_buffer(&wgpu::BufferDescriptor {
+            label: Some(label),
+            size,
+            usage: usage | wgpu::BufferUsages::COPY_DST,
+            mapped_at_creation: false,
+        })
+    });
+    let whole = new.len() & !3;
+    if whole > 0 {
+        gpu.queue.write_buffer(&buffer, 0, &new[..whole]);
+    }
+    if whole < new.len() {
+        let mut rest = [0; 4];
+        rest[..new.len() - whole].copy_from_slice(&new[whole..]);
+        gpu.queue.write_buffer(&buffer, whole as u64, &rest);
+    }
+    *slot = Some(buffer);
+    created
+}
+
+fn same_texture(old: &PublishedTexture, new: &PublishedTexture) -> bool {
+    (old.srgb, old.width, old.height) == (new.srgb, new.width, new.height) && old.mips == new.mips
+}
+
+/// The texture has been checked: every level has its bytes.
+fn create_texture(gpu: &Gpu, texture: &PublishedTexture) -> wgpu::Texture {
+    let size = wgpu::Extent3d { width: texture.width, height: texture.height, depth_or_array_layers: 1 };
+    let created = gpu.device.create_texture(&wgpu::TextureDescriptor {
+        label: Some(&texture.name),
+        size,
+        mip_level_count: texture.mips.len() as u32,
+        sample_count: 1,
+        dimension: wgpu::TextureDimension::D2,
+        format: if texture.srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm },
+        usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
+        view_formats: &[],
+    });
+    for (level, bytes) in texture.mips.iter().enumerate() {
+        let level_size = size.mip_level_size(level as u32, wgpu::TextureDimension::D2);
+        gpu.queue.write_texture(
+            wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..created.as_image_copy() },
+            bytes,
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(level_size.width * 4), rows_per_image: None },
+            level_size,
+        );
+    }
+    created
+}
