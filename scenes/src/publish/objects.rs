@@ -107,7 +107,7 @@ pub(super) fn normal_columns(transform: Affine3A) -> [Vec3; 3] {
     let cofactors = [b.cross(c), c.cross(a), a.cross(b)];
     let determinant = a.dot(cofactors[0]);
     let exact = cofactors.map(|column| (column / determinant).as_vec3());
-    if determinant != 0.0 && exact.iter().all(|column| column.is_finite()) {
+    if determinant != 0.0 && exact.iter().all(|column| column.is_finite() && *column != Vec3::ZERO) {
         return exact;
     }
     let largest = cofactors.iter().map(|column| column.abs().max_element()).fold(0.0, f64::max);

@@ -166,12 +166,12 @@ mod tests {
         #[test]
         fn everything_seen_is_in_the_map(
             x in -50.0..50.0, y in 0.5..20.0, z in -50.0..50.0, fx in -1.0..1.0, fy in -0.9..0.9, fz in -1.0..1.0,
-            lx in -1.0..1.0, ly in 0.1..1.0, lz in -1.0..1.0, near_or_far in 0.0..1.0, u in -1.0..1.0, v in -1.0..1.0,
+            lx in -1.0..1.0, ly in 0.1..1.0, lz in -1.0..1.0, near_or_far in 0.0..1.0_f64, u in -1.0..1.0_f64, v in -1.0..1.0_f64,
         ) {
             let forward = DVec3::new(fx, fy, fz).try_normalize().unwrap_or(DVec3::X);
             let camera = camera(DVec3::new(x, y, z), forward);
             let view = fit(DVec3::new(lx, ly, lz).normalize(), &camera, Some(large()), [512, 512]);
-            let distance = 0.1 + near_or_far * 300.0;
+            let distance: f64 = 0.1 + near_or_far * 300.0;
             let ray = forward + camera.pose.right * (u * camera.half[0]) + camera.pose.up * (v * camera.half[1]);
             let point = (camera.pose.position + ray * distance).as_vec3();
             let inside = point.cmpge(large().min).all() && point.cmple(large().max).all();
