@@ -12,7 +12,8 @@
 //   c. if (a) holds for one of the four and it holds nothing nearer than the receiver less 1.5 texels: this keeps the foot of a
 //      wall free of a dark line.
 // So whatever stands more than 1.5 texels in front of the receiver shadows it: no light leaks through a wall thicker than that,
-// seen along the ray. Accepted: what is nearer to the receiver may miss its shadow.
+// seen along the ray. Accepted: what is nearer to the receiver may miss its shadow; and (a) can take the lit front of a thin wall
+// for the plane, where the plane is so steep that within one texel it leads through the wall.
 //
 // Everything is in units of the size that a texel has at the receiver, so that nothing here depends on the scene's scale.
 
