@@ -1,12 +1,13 @@
 // The G-buffer: a surface point in four targets, 32 bytes as WebGPU counts them, which is the most that every device takes.
 //
-//   albedo    rgba8unorm-srgb  base colour; alpha 1 where something was drawn
-//   normals   rg32uint         shading normal, geometric normal: octahedral, 2 x 16 bits each
-//   surface   rg32uint         x: roughness 16 bits, metallic 8, flags 8; y: square root of the dielectric F0 3 x 8, weight 8
-//   emission  rg32uint         nits, with a shared exponent
+//   albedo    rgba16float  base colour, linear; alpha 1 where something was drawn
+//   normals   rg32uint     shading normal, geometric normal: octahedral, 2 x 16 bits each
+//   surface   rg32uint     x: roughness 16 bits, metallic 8, flags 8; y: square root of the dielectric F0 3 x 8, weight 8
+//   emission  rg32uint     nits, with a shared exponent
 //
-// Nothing in it depends on lights or on exposure, so that it stays as it is while those change. Roughness has 16 bits because
-// GGX highlights go with its fourth power. The position comes from depth.
+// Nothing in it depends on lights or on exposure, so that it stays as it is while those change. Half floats keep base colours to
+// 0.05 %, where 8 bit sRGB is up to 0.4 % off and counts just as much. Roughness has 16 bits because GGX highlights go with its
+// fourth power. The position comes from depth.
 
 #import "shared/octahedral.wgsl"
 #import "shared/packing.wgsl"

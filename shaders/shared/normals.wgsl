@@ -29,7 +29,7 @@ fn shading_normal_of(
     let side = select(-1.0, 1.0, front_facing);
     let up = normalize(normal);
     var shading = up * side;
-    if dot(shading, to_eye) <= LEAST_COSINE_TO_EYE {
+    if !(dot(shading, to_eye) > LEAST_COSINE_TO_EYE) {
         shading = geometric_normal;
     }
     if has_map {

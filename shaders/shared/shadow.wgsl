@@ -6,24 +6,26 @@
 // whatever its slope, and the bias only has to cover what is not plane.
 //
 // A texel lets light through
-//   a. if it holds the receiver's plane itself; or
+//   a. if it holds the receiver's plane itself, give or take a small bend; or
 //   b. if it holds nothing nearer than that plane less half a texel. The plane is followed by one texel at most: near grazing
 //      angles it would soon lead through the wall behind which the receiver stands; or
 //   c. if (a) holds for one of the four and it holds nothing nearer than the receiver less 1.5 texels: this keeps the foot of a
 //      wall free of a dark line.
 // So whatever stands more than 1.5 texels in front of the receiver shadows it: no light leaks through a wall thicker than that,
-// seen along the ray. Accepted: what is nearer to the receiver may miss its shadow.
+// seen along the ray. Accepted: what is nearer to the receiver may miss its shadow; and (a) can take the lit front of a thin wall
+// for the plane, where the plane is so steep that within one texel it leads through the wall.
 //
 // Everything is in units of the size that a texel has at the receiver, so that nothing here depends on the scene's scale.
 
 // How far the plane is followed.
 const PLANE_REACH: f32 = 1.0;
-// For what is not plane: curved surfaces, meshes finer than the map.
+// For what is not plane: meshes finer than the map, the foot of walls.
 const BIAS: f32 = 0.5;
-// (a) allows for the rasteriser, which places vertices to 1/256 of a texel, times the slope.
-const PLANE_TOLERANCE: f32 = 1.0 / 32.0;
-// But on planes so steep that this comes to more, it must not swallow occluders.
-const PLANE_TOLERANCE_MOST: f32 = 0.5;
+// (a) allows for a surface that bends by this angle (radians) between texels. On a slope s, distances per texel, that moves it by
+// (1 + s^2) times the angle. What the rasteriser adds, by placing vertices to 1/256 of a texel, is less.
+const PLANE_BEND: f32 = 1.0 / 32.0;
+// But on the steepest slopes it must not swallow occluders: not more than (c) forgives.
+const PLANE_TOLERANCE_MOST: f32 = PLANE_REACH + BIAS;
 
 // The four nearest texels of a map, as (x, y), (x + 1, y), (x, y + 1), (x + 1, y + 1). Distances from the light, in texels.
 struct ShadowTaps {
@@ -45,7 +47,7 @@ fn shadow_visibility(taps: ShadowTaps) -> f32 {
     let nearest = min(min(taps.plane.x, taps.plane.y), min(taps.plane.z, taps.plane.w));
     let farthest = max(max(taps.plane.x, taps.plane.y), max(taps.plane.z, taps.plane.w));
     let slope = farthest - nearest;
-    let tolerance = min(PLANE_TOLERANCE * (1.0 + slope), PLANE_TOLERANCE_MOST) + taps.uncertainty;
+    let tolerance = min(PLANE_BEND * (1.0 + slope * slope), PLANE_TOLERANCE_MOST) + taps.uncertainty;
 
     let holds_plane = abs(taps.occluder - taps.plane) <= vec4<f32>(tolerance);
     let limit = clamp(
