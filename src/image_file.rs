@@ -58,7 +58,8 @@ pub fn write_image(path: &Path, picture: &LinearImage) -> Result<(), Diagnostic>
     let encoded = match ImageFormat::of_path(path)? {
         ImageFormat::Png => {
             let spread = |texel: &[f32; 4]| if picture.components == 1 { [texel[0]; 3] } else { [texel[0], texel[1], texel[2]] };
-            let rgb: Vec<u8> = picture.texels.iter().flat_map(spread).map(|value| (srgb_encode(value.max(0.0)) * 255.0).round() as u8).collect();
+            let rgb: Vec<u8> =
+                picture.texels.iter().flat_map(spread).map(|value| (srgb_encode(value.max(0.0)) * 255.0).round() as u8).collect();
             PngEncoder::new(&mut bytes).write_image(&rgb, width, height, ExtendedColorType::Rgb8)
         }
         ImageFormat::Exr => {
@@ -79,7 +80,8 @@ pub fn write_image(path: &Path, picture: &LinearImage) -> Result<(), Diagnostic>
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let failed = |error: std::io::Error| {
-        Diagnostic::error("output::write", format!("can't write `{}`: {error}", path.display())).hint("choose a path in a folder that exists and may be written to")
+        Diagnostic::error("output::write", format!("can't write `{}`: {error}", path.display()))
+            .hint("choose a path in a folder that exists and may be written to")
     };
     let mut file = tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
@@ -105,9 +107,12 @@ fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
 pub fn check_writable(path: &Path) -> Result<(), Diagnostic> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() {
-        return Err(Diagnostic::error("output::write", format!("can't write `{}`: it is a folder", path.display())).hint("name a file in it"));
+        return Err(
+            Diagnostic::error("output::write", format!("can't write `{}`: it is a folder", path.display())).hint("name a file in it")
+        );
     }
     tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map(|_| ()).map_err(|error| {
-        Diagnostic::error("output::write", format!("can't write `{}`: {error}", path.display())).hint("choose a path in a folder that exists and may be written to")
+        Diagnostic::error("output::write", format!("can't write `{}`: {error}", path.display()))
+            .hint("choose a path in a folder that exists and may be written to")
     })
 }

@@ -91,14 +91,25 @@ fn no_adapter() -> Result<(), Failed> {
     let nowhere = folder.path().join("none.json");
     let output = luminaire(&arguments).env("VK_ICD_FILENAMES", &nowhere).env("VK_DRIVER_FILES", &nowhere).output()?;
     let errors = String::from_utf8_lossy(&output.stderr);
-    if output.status.code() == Some(1) && errors.contains("device::no-adapter") && errors.contains("mesa-vulkan-drivers") && !Path::new(out).exists() {
+    if output.status.code() == Some(1)
+        && errors.contains("device::no-adapter")
+        && errors.contains("mesa-vulkan-drivers")
+        && !Path::new(out).exists()
+    {
         return Ok(());
     }
     Err(format!("{:?}: {errors}", output.status.code()).into())
 }
 
 fn check_and_plan() -> Result<(), Failed> {
-    let output = run(&["check", "pipelines/albedo.ron", "pipelines/pbr.ron", "scenes/cornell.ron", "scenes/materials.ron", "shaders/pbr/light.wgsl"])?;
+    let output = run(&[
+        "check",
+        "pipelines/albedo.ron",
+        "pipelines/pbr.ron",
+        "scenes/cornell.ron",
+        "scenes/materials.ron",
+        "shaders/pbr/light.wgsl",
+    ])?;
     if output.status.code() != Some(0) {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
     }
@@ -123,7 +134,8 @@ fn same_bytes_twice() -> Result<(), Failed> {
         let out = folder.path().join(name);
         let stats = folder.path().join("stats.json");
         let (out, stats) = (out.to_str().ok_or("a path")?, stats.to_str().ok_or("a path")?);
-        let output = run(&["render", "pipelines/pbr.ron", "--scene", "scenes/materials.ron", "-o", out, "--size", "128x72", "--stats", stats])?;
+        let output =
+            run(&["render", "pipelines/pbr.ron", "--scene", "scenes/materials.ron", "-o", out, "--size", "128x72", "--stats", stats])?;
         if output.status.code() != Some(0) {
             return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
         }

@@ -74,7 +74,8 @@ fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<D
     let file = sources.add(loaded.name, loaded.text.as_str());
     let document: Document = read_document(&loaded.text, file)?;
     let validated = validate(&document, file, input.published)?;
-    let expand_input = ExpandInput { output: input.output, counts: input.counts, sets: input.sets, outputs: input.outputs, device: input.device };
+    let expand_input =
+        ExpandInput { output: input.output, counts: input.counts, sets: input.sets, outputs: input.outputs, device: input.device };
     let expanded = expand(&validated, &expand_input)?;
     let bind_input = BindInput { files: input.files, published: input.published, device: input.device, output: input.output };
     let bound = bind(expanded, &bind_input, sources)?;

@@ -6,7 +6,11 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 
 /// Real-time global illumination from render graphs written in RON.
 #[derive(Debug, Parser)]
-#[command(name = "luminaire", version, max_term_width = 100, after_help = "\
+#[command(
+    name = "luminaire",
+    version,
+    max_term_width = 100,
+    after_help = "\
 Examples:
   luminaire render pipelines/pbr.ron --scene scenes/cornell.ron -o cornell.png
   luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set tone_mapping=aces
@@ -14,7 +18,8 @@ Examples:
   luminaire plan pipelines/pbr.ron --format dot | dot -Tsvg -o plan.svg
 
 Pipelines, shaders and scenes that come with the program can be named by the same paths from anywhere; a file on disk wins.
-Exit status: 0 done, 1 something was wrong with the input or the machine (said on standard error), 2 wrong usage.")]
+Exit status: 0 done, 1 something was wrong with the input or the machine (said on standard error), 2 wrong usage."
+)]
 pub(crate) struct Arguments {
     #[command(subcommand)]
     pub command: Command,

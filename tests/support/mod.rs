@@ -74,7 +74,9 @@ pub struct Difference {
 pub fn compare(reference: &LinearImage, test: &LinearImage) -> Difference {
     assert_eq!((reference.width, reference.height), (test.width, test.height));
     let count = reference.texels.len() as f64;
-    let rgb = |image: &LinearImage| image.texels.iter().map(|texel| [f64::from(texel[0]), f64::from(texel[1]), f64::from(texel[2])]).collect::<Vec<_>>();
+    let rgb = |image: &LinearImage| {
+        image.texels.iter().map(|texel| [f64::from(texel[0]), f64::from(texel[1]), f64::from(texel[2])]).collect::<Vec<_>>()
+    };
     let (reference, test) = (rgb(reference), rgb(test));
     let mean = reference.iter().flatten().sum::<f64>() / (3.0 * count);
     let epsilon = 0.01 * mean * mean;

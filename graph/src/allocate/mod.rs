@@ -67,14 +67,7 @@ pub(crate) fn bytes_reached(model: &Model, ranges: &[Range<usize>]) -> u64 {
     arenas.iter().fold(textures::texture_bytes_reached(model, ranges), |sum, arena| sum.saturating_add(arena.bytes()))
 }
 
-fn place(
-    bound: &Bound,
-    schedule: &Schedule,
-    lifetimes: &Lifetimes,
-    model: &Model,
-    usages: Vec<Usage>,
-    device: &DeviceFacts,
-) -> Allocation {
+fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, model: &Model, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
     let resources = &bound.expanded.resources;
     let ranges = &lifetimes.ranges;
     let texture_kind = |index: usize| match (&resources[index].shape, format_of(bound, ResourceId(index as u32))) {
@@ -166,9 +159,7 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
 fn clear_usage(bound: &Bound, resource: ResourceId) -> Usage {
     let shape = bound.expanded.resources.get(resource.index()).map(|resource| &resource.shape);
     let attachment = match (shape, format_of(bound, resource)) {
-        (Some(Shape::Texture(shape)), Some(format)) => {
-            shape.dimension != Dimension::D1 && (format.is_depth() || format.info().renderable)
-        }
+        (Some(Shape::Texture(shape)), Some(format)) => shape.dimension != Dimension::D1 && (format.is_depth() || format.info().renderable),
         _ => false,
     };
     Usage { attachment, copy_target: !attachment, ..Usage::default() }

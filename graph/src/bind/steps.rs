@@ -154,7 +154,8 @@ impl<'a> Builder<'a> {
             }
             PassKind::Compute { work, .. } => {
                 let main = main?;
-                let groups = work::groups(pass, work, main, self.expanded, self.input.device, self.problems)?;
+                let groups =
+                    work::groups(pass, work, &self.shaders[program.shader], main, self.expanded, self.input.device, self.problems)?;
                 Some((StepKind::Compute { entry: main.name.clone(), groups }, None))
             }
             PassKind::Copy | PassKind::Clear { .. } => None,

@@ -8,7 +8,7 @@ use crate::diagnostic::{did_you_mean, list_names};
 use crate::expand::types::{ClearValue, Expanded, Pass, Shape, Work};
 use crate::format::Format;
 use crate::published::PublishedSchema;
-use crate::reflect::interface::EntryPoint;
+use crate::reflect::interface::{EntryPoint, Shader};
 use crate::validate::clear_fits;
 
 /// The vertex attributes by location.
@@ -38,16 +38,16 @@ pub(super) fn attributes(pass: &Pass, vertex: &EntryPoint, published: &Published
 
 /// A Fullscreen's fragment shader gets its texture coordinates at location 0, and nothing else.
 pub(super) fn fullscreen_inputs(pass: &Pass, main: &EntryPoint, problems: &mut Vec<BindError>) {
-    for (location, wgsl) in &main.fragment_inputs {
-        if *location != 0 || wgsl != "vec2<f32>" {
+    for varying in &main.varyings {
+        if varying.location != 0 || varying.wgsl != "vec2<f32>" {
             problems.push(BindError::Target {
                 pass: pass.name.clone(),
                 reason: format!(
-                    "the fragment shader `{}` takes @location({location}) {wgsl}, and a Fullscreen has only @location(0) vec2<f32>",
-                    main.name
+                    "the fragment shader `{}` takes `{}` at @location({}) as {}, and a Fullscreen has only @location(0) vec2<f32>",
+                    main.name, varying.name, varying.location, varying.wgsl
                 ),
                 hint: Some("take @location(0) uv: vec2<f32>, from (0, 0) at the top left, or @builtin(position)".to_owned()),
-                span: main.span,
+                span: varying.span,
             });
         }
     }
@@ -57,12 +57,14 @@ pub(super) fn fullscreen_inputs(pass: &Pass, main: &EntryPoint, problems: &mut V
 pub(super) fn groups(
     pass: &Pass,
     work: &Work,
+    shader: &Shader,
     main: &EntryPoint,
     expanded: &Expanded,
     device: &DeviceFacts,
     problems: &mut Vec<BindError>,
 ) -> Option<[u32; 3]> {
-    let size = main.workgroup_size.map(|axis| axis.max(1));
+    let given = |name: &str| pass.constants.iter().find(|(constant, _)| constant.value == name).map(|(_, value)| *value);
+    let size = shader.workgroup_size(&main.name, &given).unwrap_or(main.workgroup_size).map(|axis| axis.max(1));
     let mut bad = |reason: String, hint: &str, span| {
         problems.push(BindError::Work { pass: pass.name.clone(), reason, hint: Some(hint.to_owned()), span });
     };

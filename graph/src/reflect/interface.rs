@@ -46,14 +46,9 @@ pub struct EntryPoint {
     pub globals: Vec<Global>,
     /// Inputs of a vertex entry point: names and components of float vectors, in location order (location = index).
     pub vertex_inputs: Vec<VertexInput>,
-<<<<<<< HEAD
-    /// Varyings of a fragment entry point: location and WGSL type.
-    pub fragment_inputs: Vec<(u32, String)>,
-=======
     /// What goes from the vertex to the fragment stage: user-defined outputs of a vertex entry point, inputs of a fragment one, by
     /// location.
     pub varyings: Vec<Varying>,
->>>>>>> reflect
     /// Outputs of a fragment entry point, in location order (location = index).
     pub color_outputs: Vec<ColorOutput>,
     /// The fragment entry point writes `@builtin(frag_depth)`.

@@ -14,11 +14,6 @@ mod error;
 mod globals;
 mod import;
 pub mod interface;
-<<<<<<< HEAD
-use crate::{diagnostic::*, published::*, source::*};
-pub fn reflect(_: &str, _: Span, _: &dyn Files, _: &PublishedSchema, _: &mut SourceMap) -> Result<interface::Shader, Vec<Diagnostic>> {
-    Err(vec![])
-=======
 mod io;
 mod overrides;
 mod places;
@@ -88,5 +83,4 @@ fn reflect_steps(
         return Err(errors);
     }
     Ok(Shader { path: path.to_owned(), module: Arc::new(module), entries, overrides, features })
->>>>>>> reflect
 }

@@ -16,9 +16,6 @@ pub(crate) mod part;
 mod problems;
 mod versions;
 
-
-
-
 use crate::allocate::model::Model;
 use crate::bind::types::Bound;
 use crate::diagnostic::{Diagnostic, has_errors};

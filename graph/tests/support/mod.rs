@@ -4,7 +4,9 @@ use std::path::{Path, PathBuf};
 
 use luminaire_graph::compile::{Compilation, CompileInput, compile};
 use luminaire_graph::device::DeviceFacts;
-use luminaire_graph::published::{PublishedSchema, SceneCounts, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema};
+use luminaire_graph::published::{
+    PublishedSchema, SceneCounts, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
+};
 use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile};
 
 pub fn fixtures() -> PathBuf {
