@@ -2,7 +2,7 @@
 //!
 //! What can be wrong with a value of a wrong type is in [`super::fault`].
 
-use crate::diagnostic::{Diagnostic, list_names, did_you_mean};
+use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::source::{FileId, Span};
 
 use super::tree::MAX_DEPTH;
@@ -127,7 +127,9 @@ impl SyntaxError {
                 problem
             }
             SyntaxError::StrayCloser(_) => problem.at(span, "no open bracket matches"),
-            SyntaxError::UnclosedString => problem.at(span, "starts here").note("strings may span lines, so the quote that is missing may also be one before this"),
+            SyntaxError::UnclosedString => {
+                problem.at(span, "starts here").note("strings may span lines, so the quote that is missing may also be one before this")
+            }
             SyntaxError::RunawayString { end } => {
                 problem.at(span, "starts here").and(*end, "and ends here, at what looks like the start of another string")
             }
@@ -138,17 +140,22 @@ impl SyntaxError {
             SyntaxError::BadChar(_) => problem.at(span, "not a single character"),
             SyntaxError::BadNumber { why, .. } => problem.at(span, *why),
             SyntaxError::NumberRange { .. } => problem.at(span, "too large"),
-            SyntaxError::BadIdentifier(text) => problem.at(span, "only letters, digits and `_`").hint(format!("as a raw identifier it is written `r#{text}`")),
+            SyntaxError::BadIdentifier(text) => {
+                problem.at(span, "only letters, digits and `_`").hint(format!("as a raw identifier it is written `r#{text}`"))
+            }
             SyntaxError::TooDeep => problem.at(span, "this bracket is one too many"),
             SyntaxError::DuplicateKey { first, .. } | SyntaxError::DuplicateField { first, .. } => {
                 problem.at(span, "again here").and(*first, "first here")
             }
             SyntaxError::UnnamedField => problem.at(span, "expected `name: value`"),
             SyntaxError::NamedField => problem.at(span, "this value has a name"),
-            SyntaxError::QuotedField(name) => problem.at(span, "in quotes").hint(format!("write `{name}`, or use a map: `{{..}}` instead of `(..)`")),
-            SyntaxError::UnknownExtension(name) => {
-                problem.at(span, "not an extension of RON").maybe_hint(did_you_mean(name, EXTENSIONS)).note(format!("always on: {}", list_names(EXTENSIONS)))
+            SyntaxError::QuotedField(name) => {
+                problem.at(span, "in quotes").hint(format!("write `{name}`, or use a map: `{{..}}` instead of `(..)`"))
             }
+            SyntaxError::UnknownExtension(name) => problem
+                .at(span, "not an extension of RON")
+                .maybe_hint(did_you_mean(name, EXTENSIONS))
+                .note(format!("always on: {}", list_names(EXTENSIONS))),
             SyntaxError::UnsupportedExtension(_) => {
                 problem.at(span, "it would change what the text means").note(format!("always on: {}", list_names(EXTENSIONS)))
             }

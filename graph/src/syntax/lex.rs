@@ -86,10 +86,7 @@ pub(super) struct Lexer<'a> {
 
 /// What RON takes for white space.
 fn is_space(char: char) -> bool {
-    matches!(
-        char,
-        ' ' | '\t' | '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}'
-    )
+    matches!(char, ' ' | '\t' | '\n' | '\r' | '\u{b}' | '\u{c}' | '\u{85}' | '\u{200e}' | '\u{200f}' | '\u{2028}' | '\u{2029}')
 }
 
 fn is_raw_identifier_char(char: char) -> bool {

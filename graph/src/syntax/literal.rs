@@ -136,7 +136,11 @@ impl<'a> Lexer<'a> {
         if self.take("'") {
             return TokenKind::Char(char);
         }
-        let why = if char == '\'' { "a character literal is empty" } else { "a character literal holds one character; strings have double quotes" };
+        let why = if char == '\'' {
+            "a character literal is empty"
+        } else {
+            "a character literal holds one character; strings have double quotes"
+        };
         let kind = self.end_of_bad_char();
         self.report(start, self.position, &SyntaxError::BadChar(why));
         kind

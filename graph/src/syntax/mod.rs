@@ -29,11 +29,29 @@ pub mod error;
 pub mod spanned;
 pub mod tree;
 
+mod access;
 mod attributes;
+mod deserialize;
 mod duplicates;
+mod fault;
 mod lex;
 mod literal;
 mod number;
 mod parse;
+mod recover;
 
 pub use parse::parse;
+pub use recover::{deserialize_document, from_tree};
+
+use serde::de::DeserializeOwned;
+
+use crate::diagnostic::Diagnostic;
+use crate::source::FileId;
+
+/// Reads a RON text as a value of any type.
+///
+/// # Errors
+/// Those of [`parse`], or, where the text is RON, those of [`deserialize_document`].
+pub fn read_document<T: DeserializeOwned>(text: &str, file: FileId) -> Result<T, Vec<Diagnostic>> {
+    deserialize_document(&parse(text, file)?)
+}

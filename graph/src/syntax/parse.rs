@@ -86,7 +86,15 @@ impl<'a> Parser<'a> {
     fn new(text: &'a str, file: FileId) -> Parser<'a> {
         let mut lexer = Lexer::new(text, Problems::new(file));
         let current = lexer.next_token();
-        Parser { lexer, current, ahead: VecDeque::new(), previous_end: 0, previous_long_string: None, open: Vec::new(), open_of_kind: [0; 3] }
+        Parser {
+            lexer,
+            current,
+            ahead: VecDeque::new(),
+            previous_end: 0,
+            previous_long_string: None,
+            open: Vec::new(),
+            open_of_kind: [0; 3],
+        }
     }
 
     // Tokens.
@@ -353,7 +361,12 @@ impl<'a> Parser<'a> {
         }
         let starts_value = matches!(
             self.current.kind,
-            TokenKind::Open(_) | TokenKind::Word { .. } | TokenKind::Str(_) | TokenKind::Number(_) | TokenKind::Char(_) | TokenKind::Bytes(_)
+            TokenKind::Open(_)
+                | TokenKind::Word { .. }
+                | TokenKind::Str(_)
+                | TokenKind::Number(_)
+                | TokenKind::Char(_)
+                | TokenKind::Bytes(_)
         );
         let span = match self.current.kind {
             TokenKind::Equals => self.span(),
@@ -406,16 +419,14 @@ impl<'a> Parser<'a> {
                     self.unexpected("a value");
                     self.advance();
                 }
-                _ => {
-                    match item(self, &mut go_on) {
-                        Some(value) => {
-                            items.push(value);
-                            self.separator(kind, &mut comma_reported);
-                        }
-                        None if go_on => self.skip_item(),
-                        None => self.skip(Until::Closer),
+                _ => match item(self, &mut go_on) {
+                    Some(value) => {
+                        items.push(value);
+                        self.separator(kind, &mut comma_reported);
                     }
-                }
+                    None if go_on => self.skip_item(),
+                    None => self.skip(Until::Closer),
+                },
             }
         };
         self.pop_open();

@@ -282,7 +282,9 @@ impl PartialEq for Key<'_> {
                     && x.iter().zip(y).all(|(x, y)| x.name.text == y.name.text && Key(&x.value) == Key(&y.value))
             }
             (Value::Range(a), Value::Range(b)) => {
-                a.inclusive == b.inclusive && a.start.as_ref().map(Key) == b.start.as_ref().map(Key) && a.end.as_ref().map(Key) == b.end.as_ref().map(Key)
+                a.inclusive == b.inclusive
+                    && a.start.as_ref().map(Key) == b.start.as_ref().map(Key)
+                    && a.end.as_ref().map(Key) == b.end.as_ref().map(Key)
             }
             _ => false,
         }
