@@ -8,5 +8,7 @@ pub mod gltf;
 pub mod primitive;
 pub mod publish;
 pub mod scene_file;
-pub mod shipped;
 pub mod world;
+
+pub use scene_file::{LoadedScene, load_scene, load_scene_text};
+pub use world::{World, set_translation};
