@@ -8,7 +8,8 @@ use luminaire_graph::diagnostic::{Diagnostic, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats};
-use luminaire_scenes::World;
+use luminaire_scenes::scene_file;
+use luminaire_scenes::world::World;
 use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
 
 use crate::files::{DiskFiles, embedded_scene};
@@ -34,8 +35,8 @@ pub fn load_scene(path: &str, asset_root: Option<&Path>) -> Result<LoadedScene, 
     let mut sources = SourceMap::default();
     let on_disk = Path::new(path);
     let loaded = match (on_disk.exists(), embedded_scene(path)) {
-        (false, Some(embedded)) => luminaire_scenes::load_scene_text(&embedded.name, &embedded.text, &mut sources),
-        _ => luminaire_scenes::load_scene(on_disk, asset_root, &mut sources),
+        (false, Some(embedded)) => scene_file::load_scene_text(&embedded.name, &embedded.text, &mut sources),
+        _ => scene_file::load_scene(on_disk, asset_root, &mut sources),
     };
     match loaded {
         Ok(loaded) => Ok(LoadedScene { world: loaded.world, diagnostics: loaded.warnings, sources }),
@@ -120,7 +121,9 @@ impl Session {
             draw_lists: &plan.draw_lists,
             max_texture_2d: facts.max_texture_2d,
         };
-        let made = publish(world, &publish_request).and_then(|scene| {
+        let made = publish(world, &publish_request).and_then(|published_scene| {
+            diagnostics.extend(published_scene.warnings);
+            let scene = published_scene.scene;
             let gpu = adapter.open(&plan.requirements, request.timing)?;
             Executor::new(&gpu, Arc::clone(&plan), &published, Arc::new(scene))
         });

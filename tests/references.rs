@@ -34,9 +34,7 @@ fn render(case: &Case) -> Result<(LinearImage, LinearImage), Failed> {
     let scene = folder.join(case.scene);
     let mut loaded = load_scene(&scene.display().to_string(), None).map_err(|(problems, _)| format!("{problems:?}"))?;
     for (node, translation) in case.moved {
-        if !luminaire::scenes::set_translation(&mut loaded.world, node, (*translation).into()) {
-            return Err(format!("no node `{node}`").into());
-        }
+        luminaire::scenes::world::set_translation(&mut loaded.world, node, (*translation).into()).map_err(|problem| problem.message)?;
     }
     let outputs = ["radiance".to_owned()];
     let request = RenderRequest {
