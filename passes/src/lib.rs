@@ -1,8 +1,7 @@
 //! Runs plans of `luminaire-graph` on wgpu.
 //!
-//! [`device`] opens a GPU, [`executor`] prepares a plan on it and renders frames. One file per pass kind ([`draw`],
-//! [`fullscreen`], [`compute`], [`copy`], [`clear`]) says how a step is prepared and encoded; the files beside them make what
-//! steps share.
+//! [`device`] opens a GPU, [`executor`] prepares a plan on it and renders frames. One file per pass kind (`draw`, `fullscreen`,
+//! `compute`, `copy`, `clear`) says how a step is prepared and encoded; the files beside them make what steps share.
 //!
 //! Every error of wgpu comes back as a diagnostic; none panics.
 
