@@ -75,6 +75,8 @@ pub struct PlannedResource {
     pub placement: Option<Placement>,
     /// Why it shares memory with nothing, if so.
     pub retained: Option<Retained>,
+    /// Why no other resource has its bytes at another time, if so.
+    pub alone: Option<Alone>,
 }
 
 /// What a resource is.
@@ -100,6 +102,34 @@ pub struct Placement {
 pub enum Retained {
     /// It is an output that was asked for.
     Output,
+}
+
+/// Why no other resource uses the same bytes. Every refusal has a name.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Alone {
+    /// It keeps its value from frame to frame.
+    Retained(Retained),
+    /// No other transient texture has the same descriptor.
+    OnlyOfItsDescriptor,
+    /// So many textures of its descriptor are in use at once at a step, each in a memory of its own: one more sharer saves nothing.
+    InUseTogether {
+        /// How many.
+        count: usize,
+        /// The step, by index.
+        step: usize,
+    },
+    /// There is no other transient buffer.
+    OnlyBuffer,
+    /// Every other buffer is in use at the same time.
+    BuffersInUse,
+    /// Whatever is free at other times stands in an arena with this buffer, which a pass uses with different access (or copies
+    /// to or from): the driver tracks whole buffers, so the two never share an arena.
+    AccessConflict {
+        /// The buffer.
+        rival: ResourceId,
+    },
+    /// Other buffers are free at other times, and none of them gains by it: they are placed below or above.
+    NothingToGain,
 }
 
 /// What the executor creates once.
@@ -458,6 +488,23 @@ pub enum Access {
     Clear,
 }
 
+impl Access {
+    /// The usage that a memory needs for it.
+    pub fn usage(self) -> Usage {
+        let mut usage = Usage::default();
+        match self {
+            Access::Sampled => usage.sampled = true,
+            Access::StorageRead | Access::StorageWrite | Access::StorageReadWrite => usage.storage = true,
+            Access::Uniform => usage.uniform = true,
+            Access::ColorAttachment | Access::DepthAttachment | Access::DepthReadOnly => usage.attachment = true,
+            Access::CopySource => usage.copy_source = true,
+            // The executor clears through an attachment or through a copy, as the format allows.
+            Access::CopyTarget | Access::Clear => usage.copy_target = true,
+        }
+        usage
+    }
+}
+
 /// A pass that does not run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Culled {
@@ -471,6 +518,19 @@ pub struct Culled {
     pub writes: Vec<ResourceId>,
     /// The resources that it would have read.
     pub reads: Vec<ResourceId>,
+    /// Why it does not run.
+    pub reason: CullReason,
+}
+
+/// Why a pass does not run.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CullReason {
+    /// It has no results.
+    WritesNothing,
+    /// Nothing uses its results.
+    Unread,
+    /// Only passes that do not run use its results.
+    OnlyCulledReaders(Vec<PassId>),
 }
 
 /// A result.
@@ -485,7 +545,7 @@ pub struct PlannedOutput {
 /// What transient resources cost, in bytes. Retained ones are apart.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct MemoryFigures {
-    /// Every transient resource in memory of its own.
+    /// Every transient resource in memory of its own: tight bytes of textures, buffers in units of 256.
     pub without_sharing: u64,
     /// What the executor allocates for them.
     pub reached: u64,

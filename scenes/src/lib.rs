@@ -1,1 +1,12 @@
-//! placeholder
+//! Scenes: the world, its loaders, and what it publishes to passes.
+//!
+//! A file becomes an [`asset::Asset`] or a scene document; both are spawned into a `bevy_ecs` [`world`]; [`publish`] turns the
+//! world into the tables, textures and draw lists that shaders ask for by name. Nothing here knows a GPU or a pipeline.
+
+pub mod asset;
+pub mod gltf;
+pub mod primitive;
+pub mod publish;
+pub mod scene_file;
+pub mod shipped;
+pub mod world;

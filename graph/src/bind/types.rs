@@ -28,18 +28,9 @@ pub struct Bound {
 impl Bound {
     /// The part of `usage` that a step adds to a resource.
     pub fn usage_of(step: &Step, resource: ResourceId) -> Usage {
-        use crate::plan::Access;
         let mut usage = Usage::default();
         for touched in step.uses.iter().filter(|touched| touched.resource == resource) {
-            match touched.access {
-                Access::Sampled => usage.sampled = true,
-                Access::StorageRead | Access::StorageWrite | Access::StorageReadWrite => usage.storage = true,
-                Access::Uniform => usage.uniform = true,
-                Access::ColorAttachment | Access::DepthAttachment | Access::DepthReadOnly => usage.attachment = true,
-                Access::CopySource => usage.copy_source = true,
-                // The executor clears through an attachment or through a copy, as the format allows.
-                Access::CopyTarget | Access::Clear => usage.copy_target = true,
-            }
+            usage = usage.union(touched.access.usage());
         }
         usage
     }

@@ -1,1 +1,69 @@
+//! Validated document to a flat list: parameters have values, sizes are numbers, loops are unrolled, conditions are decided.
+//!
+//! Guarantees: every extent is within the device's limits, every part exists, names of passes are unique and stable, and every
+//! pass and reference keeps the place where the author wrote it.
+
+mod environment;
+mod error;
+mod params;
+mod passes;
+mod resources;
 pub mod types;
+
+pub use error::ExpandError;
+pub use passes::MAX_PASSES;
+
+use std::collections::HashSet;
+
+use crate::device::DeviceFacts;
+use crate::diagnostic::{Diagnostic, has_errors};
+use crate::published::SceneCounts;
+use crate::validate::types::Validated;
+use environment::Environment;
+use types::{Expanded, Output};
+
+/// What the values of expressions depend on.
+#[derive(Debug, Clone, Copy)]
+pub struct ExpandInput<'a> {
+    /// Width and height of the rendered image.
+    pub output: [u32; 2],
+    /// How many of each thing the scene has.
+    pub counts: &'a SceneCounts,
+    /// Parameters that are set, as texts.
+    pub sets: &'a [(String, String)],
+    /// The outputs asked for; `None` asks for all.
+    pub outputs: Option<&'a [String]>,
+    /// Limits.
+    pub device: &'a DeviceFacts,
+}
+
+/// Expands a validated document.
+pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded, Vec<Diagnostic>> {
+    let mut problems = Vec::new();
+    let params = params::values(&validated.params, input.sets, &mut problems);
+    let mut environment =
+        Environment { params, indices: Vec::new(), output: input.output, counts: input.counts, problems, reported: HashSet::new() };
+    let resources: Vec<_> =
+        validated.resources.iter().filter_map(|decl| resources::resource(&mut environment, decl, input.device)).collect();
+    // Parts can only be checked against resources that are all there.
+    if resources.len() < validated.resources.len() {
+        return Err(environment.problems);
+    }
+    let passes = passes::passes(&mut environment, &validated.items, &resources);
+    let mut outputs = Vec::new();
+    for (name, part) in &validated.outputs {
+        if input.outputs.is_none_or(|asked| asked.contains(&name.value))
+            && let Some(part) = passes::reference(&mut environment, &resources, part, "outputs")
+        {
+            outputs.push(Output { name: name.value.clone(), part });
+        }
+    }
+    for asked in input.outputs.into_iter().flatten() {
+        if !validated.outputs.iter().any(|(name, _)| name.value == *asked) {
+            let known = validated.outputs.iter().map(|(name, _)| name.value.clone()).collect();
+            environment.report(ExpandError::UnknownOutput { name: asked.clone(), known });
+        }
+    }
+    let Environment { params, problems, .. } = environment;
+    if has_errors(&problems) { Err(problems) } else { Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, outputs }) }
+}

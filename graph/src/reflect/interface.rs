@@ -40,12 +40,15 @@ pub struct EntryPoint {
     pub span: Span,
     /// Vertex, fragment or compute.
     pub stage: Stage,
-    /// Of a compute entry point, else zero.
+    /// Of a compute entry point, else zero. Where overrides take part, with their defaults; see [`Shader::workgroup_size`].
     pub workgroup_size: [u32; 3],
     /// The resource variables that it uses, directly or through what it calls, in the order of the file.
     pub globals: Vec<Global>,
     /// Inputs of a vertex entry point: names and components of float vectors, in location order (location = index).
     pub vertex_inputs: Vec<VertexInput>,
+    /// What goes from the vertex to the fragment stage: user-defined outputs of a vertex entry point, inputs of a fragment one, by
+    /// location.
+    pub varyings: Vec<Varying>,
     /// Outputs of a fragment entry point, in location order (location = index).
     pub color_outputs: Vec<ColorOutput>,
     /// The fragment entry point writes `@builtin(frag_depth)`.
@@ -64,6 +67,21 @@ pub struct VertexInput {
     pub span: Span,
     pub location: u32,
     pub components: u32,
+}
+
+/// A value between the vertex and the fragment stage.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Varying {
+    /// Of the parameter or member.
+    pub name: String,
+    /// Where the name stands.
+    pub span: Span,
+    /// Written by the author.
+    pub location: u32,
+    /// WGSL type.
+    pub wgsl: String,
+    /// As in `@interpolate(...)`, with defaults: `perspective, center`.
+    pub interpolation: String,
 }
 
 /// A color output of a fragment entry point.

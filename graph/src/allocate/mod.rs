@@ -1,0 +1,176 @@
+//! Memory: which texture or which bytes of an arena each resource gets, and what it all comes to.
+//!
+//! Textures are reused whole where their descriptors cover each other, buffers are sub-ranges of arenas, and outputs share with
+//! nothing. Limits and the budget are checked here, so that whatever passes can be created. What the figures can't show is a
+//! driver's own rounding of texture sizes: safe wgpu does not tell it.
+
+pub(crate) mod arenas;
+pub mod extent;
+pub(crate) mod figures;
+mod limits;
+pub(crate) mod model;
+mod refusals;
+mod strip;
+pub(crate) mod textures;
+
+use std::ops::Range;
+
+use crate::bind::types::Bound;
+use crate::device::DeviceFacts;
+use crate::diagnostic::Diagnostic;
+use crate::expand::types::{Dimension, PassId, ResourceId, Shape};
+use crate::lifetime::Lifetimes;
+use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Usage};
+use crate::schedule::Schedule;
+use extent::{ARENA_ALIGNMENT, format_of, resource_bytes, round_up};
+use model::Model;
+
+/// Where everything lives. All lists but `memories` are by resource id.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Allocation {
+    /// What is to be created: transient textures, then arenas, then the memories of retained resources.
+    pub memories: Vec<Memory>,
+    /// Where each resource lives; `None` if no step uses it.
+    pub placements: Vec<Option<Placement>>,
+    /// Tight bytes of each resource.
+    pub bytes: Vec<u64>,
+    /// All that is done to each resource.
+    pub usages: Vec<Usage>,
+    /// Why no other resource has its bytes at another time, if so.
+    pub alone: Vec<Option<Alone>>,
+    /// The sums.
+    pub figures: MemoryFigures,
+}
+
+/// Assigns memory to every resource that a scheduled pass uses. Fails, with all reasons, where a limit or the budget is exceeded.
+pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, device: &DeviceFacts) -> Result<Allocation, Vec<Diagnostic>> {
+    let mut runs = vec![false; bound.steps.len()];
+    for pass in &schedule.order {
+        runs[pass.index()] = true;
+    }
+    let model = Model::new(bound, |index| runs[index]);
+    let usages = usages(bound, schedule);
+    let problems = limits::resources(bound, lifetimes, &usages, device);
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let allocation = place(bound, schedule, lifetimes, &model, usages, device);
+    match limits::budget(bound, &allocation, device) {
+        Some(problem) => Err(vec![problem]),
+        None => Ok(allocation),
+    }
+}
+
+/// Bytes that the executor would allocate for transients, given when they are in use.
+pub(crate) fn bytes_reached(model: &Model, ranges: &[Range<usize>]) -> u64 {
+    let arenas = arenas::pack(model, ranges, arenas::ARENA_LIMIT);
+    arenas.iter().fold(textures::texture_bytes_reached(model, ranges), |sum, arena| sum.saturating_add(arena.bytes()))
+}
+
+fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, model: &Model, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
+    let resources = &bound.expanded.resources;
+    let ranges = &lifetimes.ranges;
+    let texture_kind = |index: usize| match (&resources[index].shape, format_of(bound, ResourceId(index as u32))) {
+        (Shape::Texture(shape), Some(format)) => MemoryKind::Texture(shape.clone(), format),
+        _ => MemoryKind::Arena,
+    };
+    let mut memories: Vec<Memory> = Vec::new();
+    let mut placements: Vec<Option<Placement>> = vec![None; resources.len()];
+    for slot in textures::assign(model, ranges, &usages) {
+        let Some(first) = slot.holders.first().map(|resource| *resource as usize) else { continue };
+        let memory = MemoryId(memories.len() as u32);
+        for holder in &slot.holders {
+            placements[*holder as usize] = Some(Placement { memory, offset: 0 });
+        }
+        memories.push(Memory {
+            kind: texture_kind(first),
+            usage: slot.usage,
+            bytes: model.charged[first],
+            holders: slot.holders.iter().map(|resource| ResourceId(*resource)).collect(),
+        });
+    }
+    for mut arena in arenas::pack(model, ranges, arenas::ARENA_LIMIT.min(device.max_buffer_bytes)) {
+        let memory = MemoryId(memories.len() as u32);
+        arena.holders.sort_by_key(|(resource, offset)| (ranges[*resource as usize].start, *offset, *resource));
+        let mut usage = Usage::default();
+        for (resource, offset) in &arena.holders {
+            usage = usage.union(usages[*resource as usize]);
+            placements[*resource as usize] = Some(Placement { memory, offset: *offset });
+        }
+        let holders = arena.holders.iter().map(|(resource, _)| ResourceId(*resource)).collect();
+        memories.push(Memory { kind: MemoryKind::Arena, usage, bytes: arena.bytes(), holders });
+    }
+    let transient_memories = memories.len();
+    for index in (0..resources.len()).filter(|index| model.retained[*index] && !ranges[*index].is_empty()) {
+        placements[index] = Some(Placement { memory: MemoryId(memories.len() as u32), offset: 0 });
+        let holders = vec![ResourceId(index as u32)];
+        memories.push(Memory { kind: texture_kind(index), usage: usages[index], bytes: model.charged[index], holders });
+    }
+    let sum = |memories: &[Memory]| memories.iter().fold(0u64, |sum, memory| sum.saturating_add(memory.bytes));
+    let figures = MemoryFigures {
+        without_sharing: figures::without_sharing(model, ranges),
+        reached: sum(&memories[..transient_memories]),
+        bound: figures::peak(model, ranges),
+        declared_bound: figures::peak(model, &model.touches.ranges(&schedule.declared)),
+        placed: figures::placed(model, ranges),
+        retained: sum(&memories[transient_memories..]),
+    };
+    let alone = refusals::refusals(model, lifetimes, &memories, &placements);
+    let bytes = resources.iter().enumerate().map(|(index, resource)| {
+        // Resources in use were checked; others only show their size.
+        resource_bytes(resource, format_of(bound, ResourceId(index as u32))).unwrap_or(u64::MAX)
+    });
+    Allocation { memories, placements, bytes: bytes.collect(), usages, alone, figures }
+}
+
+/// What the steps that run do to each resource, clears and the reading of outputs by the host included.
+fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
+    let mut usages = vec![Usage::default(); bound.expanded.resources.len()];
+    let mut add = |resource: ResourceId, usage: Usage| {
+        if let Some(entry) = usages.get_mut(resource.index()) {
+            *entry = entry.union(usage);
+        }
+    };
+    let clear = |part: &PartView| clear_usage(bound, part.resource);
+    for pass in &schedule.order {
+        let step = &bound.steps[pass.index()];
+        for used in &step.uses {
+            add(used.resource, used.access.usage());
+            if used.access == crate::plan::Access::Clear {
+                add(used.resource, clear_usage(bound, used.resource));
+            }
+        }
+        for (part, _) in &step.clears {
+            add(part.resource, clear(part));
+        }
+    }
+    for (_, part, _) in &schedule.initial_clears {
+        add(part.resource, clear(part));
+    }
+    for output in &bound.expanded.outputs {
+        // The host reads outputs back, and a viewer samples them.
+        let texture = bound.expanded.resources.get(output.part.resource.index()).is_some_and(|it| matches!(it.shape, Shape::Texture(_)));
+        add(output.part.resource, Usage { copy_source: true, sampled: texture, ..Usage::default() });
+    }
+    usages
+}
+
+/// Attachments are cleared as such, everything else by a copy.
+fn clear_usage(bound: &Bound, resource: ResourceId) -> Usage {
+    let shape = bound.expanded.resources.get(resource.index()).map(|resource| &resource.shape);
+    let attachment = match (shape, format_of(bound, resource)) {
+        (Some(Shape::Texture(shape)), Some(format)) => shape.dimension != Dimension::D1 && (format.is_depth() || format.info().renderable),
+        _ => false,
+    };
+    Usage { attachment, copy_target: !attachment, ..Usage::default() }
+}
+
+/// What a memory counts for in the figures.
+pub(crate) fn charged(kind: &MemoryKind, bytes: u64) -> u64 {
+    if *kind == MemoryKind::Arena { round_up(bytes, ARENA_ALIGNMENT).unwrap_or(u64::MAX) } else { bytes }
+}
+
+/// When each transient is in use in an order.
+pub(crate) fn ranges_in(model: &Model, order: &[PassId]) -> Vec<Range<usize>> {
+    model.touches.ranges(order)
+}

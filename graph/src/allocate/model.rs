@@ -1,0 +1,135 @@
+//! What memory planning needs to know of a pipeline, in flat tables that hold for every order of its passes.
+
+use std::collections::{BTreeMap, HashMap};
+
+use super::extent::{charged_bytes, format_of};
+use crate::bind::types::Bound;
+use crate::expand::types::{ResourceId, Shape, TextureShape};
+use crate::format::Format;
+use crate::lifetime::{Touches, retained};
+use crate::plan::{Access, Step};
+
+/// Everything of a texture's descriptor but usage and name: equal keys can share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub(crate) struct Descriptor {
+    dimension: crate::expand::types::Dimension,
+    format: Format,
+    extent: [u32; 3],
+    layers: u32,
+    mips: u32,
+    samples: u32,
+}
+
+impl Descriptor {
+    /// The descriptor of a texture.
+    pub(crate) fn of(shape: &TextureShape, format: Format) -> Descriptor {
+        Descriptor {
+            dimension: shape.dimension,
+            format,
+            extent: [shape.width, shape.height, shape.depth],
+            layers: shape.layers,
+            mips: shape.mips,
+            samples: shape.samples,
+        }
+    }
+}
+
+/// Which pool a resource draws from.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Pool {
+    /// Textures of one descriptor, by index into [`Model::descriptors`].
+    Texture(u32),
+    /// Arenas.
+    Buffer,
+}
+
+/// The tables.
+#[derive(Debug)]
+pub(crate) struct Model {
+    /// By resource.
+    pub(crate) pools: Vec<Pool>,
+    /// By resource; saturated where they do not fit.
+    pub(crate) charged: Vec<u64>,
+    /// By resource.
+    pub(crate) retained: Vec<bool>,
+    /// By descriptor: bytes of a texture.
+    pub(crate) descriptors: Vec<u64>,
+    /// For each buffer the buffers that it must not share an arena with, by id.
+    pub(crate) conflicts: BTreeMap<u32, Vec<u32>>,
+    /// By pass: resources.
+    pub(crate) touches: Touches,
+}
+
+impl Model {
+    /// Reads a pipeline. `alive` tells for each pass whether it runs.
+    pub(crate) fn new(bound: &Bound, alive: impl Fn(usize) -> bool) -> Model {
+        // Looked up and never walked, so its order does not matter.
+        let mut known: HashMap<Descriptor, u32> = HashMap::new();
+        let mut descriptors = Vec::new();
+        let (mut pools, mut charged) = (Vec::new(), Vec::new());
+        for (index, resource) in bound.expanded.resources.iter().enumerate() {
+            let format = format_of(bound, ResourceId(index as u32));
+            let bytes = charged_bytes(resource, format).unwrap_or(u64::MAX);
+            charged.push(bytes);
+            pools.push(match (&resource.shape, format) {
+                (Shape::Texture(shape), Some(format)) => Pool::Texture(*known.entry(Descriptor::of(shape, format)).or_insert_with(|| {
+                    descriptors.push(bytes);
+                    descriptors.len() as u32 - 1
+                })),
+                _ => Pool::Buffer,
+            });
+        }
+        let mut conflicts = BTreeMap::new();
+        for (_, step) in bound.steps.iter().enumerate().filter(|(index, _)| alive(*index)) {
+            enter_conflicts(step, &pools, &mut conflicts);
+        }
+        for others in conflicts.values_mut() {
+            others.sort_unstable();
+            others.dedup();
+        }
+        Model { pools, charged, retained: retained(bound), descriptors, conflicts, touches: Touches::new(bound) }
+    }
+
+    /// Whether a resource takes part in sharing.
+    pub(crate) fn is_transient(&self, resource: usize) -> bool {
+        !self.retained[resource]
+    }
+}
+
+/// What the driver tracks a buffer as during a pass. Storage that is declared `read_write` is one usage, written or not.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Tracked {
+    Uniform,
+    StorageRead,
+    StorageWrite,
+    CopySource,
+    CopyTarget,
+    Texture,
+}
+
+impl Tracked {
+    /// The usage behind an access.
+    pub(crate) fn of(access: Access) -> Tracked {
+        match access {
+            Access::Uniform => Tracked::Uniform,
+            Access::StorageRead => Tracked::StorageRead,
+            Access::StorageWrite | Access::StorageReadWrite => Tracked::StorageWrite,
+            Access::CopySource => Tracked::CopySource,
+            Access::CopyTarget | Access::Clear => Tracked::CopyTarget,
+            Access::Sampled | Access::ColorAttachment | Access::DepthAttachment | Access::DepthReadOnly => Tracked::Texture,
+        }
+    }
+}
+
+fn enter_conflicts(step: &Step, pools: &[Pool], conflicts: &mut BTreeMap<u32, Vec<u32>>) {
+    let is_buffer = |resource: ResourceId| pools.get(resource.index()) == Some(&Pool::Buffer);
+    let buffers: Vec<(Tracked, u32)> =
+        step.uses.iter().filter(|used| is_buffer(used.resource)).map(|used| (Tracked::of(used.access), used.resource.0)).collect();
+    for (tracked, buffer) in &buffers {
+        for (other_tracked, other) in &buffers {
+            if tracked != other_tracked && buffer != other {
+                conflicts.entry(*buffer).or_default().push(*other);
+            }
+        }
+    }
+}

@@ -1,0 +1,40 @@
+//! How much a shader stage may bind.
+
+use super::error::BindError;
+use crate::device::DeviceFacts;
+use crate::expand::types::Pass;
+use crate::plan::{Binding, BindingTarget, Stages};
+
+/// Checks the bindings of a pass against what each stage may have.
+pub(super) fn check(pass: &Pass, bindings: &[Binding], device: &DeviceFacts, problems: &mut Vec<BindError>) {
+    let stages: [(&str, fn(&Stages) -> bool); 3] =
+        [("vertex", |stages| stages.vertex), ("fragment", |stages| stages.fragment), ("compute", |stages| stages.compute)];
+    let kinds: [(&str, u32, fn(&BindingTarget) -> bool); 5] = [
+        ("sampled textures", device.max_sampled_textures, |target| {
+            matches!(target, BindingTarget::Texture { .. } | BindingTarget::MaterialTexture(_))
+        }),
+        ("samplers", device.max_samplers, |target| matches!(target, BindingTarget::Sampler(_) | BindingTarget::MaterialSampler(_))),
+        ("storage textures", device.max_storage_textures, |target| matches!(target, BindingTarget::StorageTexture { .. })),
+        ("storage buffers", device.max_storage_buffers, |target| {
+            matches!(target, BindingTarget::StorageTable(_) | BindingTarget::Buffer { uniform: false, .. })
+        }),
+        ("uniform buffers", device.max_uniform_buffers, |target| {
+            matches!(
+                target,
+                BindingTarget::UniformTable(_)
+                    | BindingTarget::View(_)
+                    | BindingTarget::Params(_)
+                    | BindingTarget::Buffer { uniform: true, .. }
+            )
+        }),
+    ];
+    for (stage, in_stage) in stages {
+        for (what, limit, is_kind) in kinds {
+            let count = bindings.iter().filter(|binding| in_stage(&binding.stages) && is_kind(&binding.target)).count();
+            if count > limit as usize {
+                let reason = format!("its {stage} stage uses {count} {what}, and {} allows {limit}", device.name);
+                problems.push(BindError::OverLimit { pass: pass.name.clone(), reason, span: pass.span });
+            }
+        }
+    }
+}

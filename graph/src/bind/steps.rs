@@ -1,0 +1,289 @@
+//! One pass to one step.
+
+use std::collections::HashMap;
+use std::hash::Hash;
+
+use super::error::BindError;
+use super::program::Program;
+use super::slots::{Taken, Taker};
+use super::{BindInput, formats as format_choice, limits, params, tables, targets, views, work};
+use crate::device::Feature;
+use crate::expand::types::{ClearValue, Expanded, Pass, PassId, PassKind, Shape, Work};
+use crate::format::Format;
+use crate::plan::{Access, Binding, BindingTarget, PartView, Requirement, Role, Step, StepKind, Use};
+use crate::published::{DrawFilter, ViewKind, ViewRequest};
+use crate::reflect::interface::{GlobalKind, Shader, StorageAccess};
+
+/// Distinct values in the order of their first use, by index.
+pub(super) struct Interner<T> {
+    values: Vec<T>,
+    indices: HashMap<T, usize>,
+}
+
+impl<T: Copy + Eq + Hash> Interner<T> {
+    fn new() -> Interner<T> {
+        Interner { values: Vec::new(), indices: HashMap::new() }
+    }
+
+    fn index(&mut self, value: T) -> usize {
+        let next = self.values.len();
+        let index = *self.indices.entry(value).or_insert(next);
+        if index == next {
+            self.values.push(value);
+        }
+        index
+    }
+
+    pub(super) fn into_vec(self) -> Vec<T> {
+        self.values
+    }
+}
+
+/// Builds steps, and collects what they share.
+pub(super) struct Builder<'a> {
+    expanded: &'a Expanded,
+    input: &'a BindInput<'a>,
+    shaders: &'a [Shader],
+    formats: &'a [Option<Format>],
+    problems: &'a mut Vec<BindError>,
+    pub views: Interner<ViewRequest>,
+    pub draw_lists: Interner<(DrawFilter, ViewKind)>,
+    pub requirements: Vec<Requirement>,
+}
+
+impl<'a> Builder<'a> {
+    pub(super) fn new(
+        expanded: &'a Expanded,
+        input: &'a BindInput<'a>,
+        shaders: &'a [Shader],
+        formats: &'a [Option<Format>],
+        problems: &'a mut Vec<BindError>,
+    ) -> Builder<'a> {
+        Builder {
+            expanded,
+            input,
+            shaders,
+            formats,
+            problems,
+            views: Interner::new(),
+            draw_lists: Interner::new(),
+            requirements: Vec::new(),
+        }
+    }
+
+    /// The step of a pass; `None` if something is wrong with it.
+    pub(super) fn step(&mut self, index: usize, pass: &Pass, program: Option<&Program>, taken: &[Taken]) -> Option<Step> {
+        let id = PassId(index as u32);
+        let (kind, view) = match program {
+            None => (self.transfer(pass, taken)?, None),
+            Some(program) => self.kind(pass, program, taken)?,
+        };
+        let mut bindings = Vec::new();
+        let mut constants = Vec::new();
+        if let Some(program) = program {
+            bindings = self.bindings(pass, program, taken, view);
+            let shader = &self.shaders[program.shader];
+            let entries: Vec<_> = [program.vertex(self.shaders), program.main(self.shaders)].into_iter().flatten().collect();
+            constants = params::constants(pass, shader, &entries, self.problems);
+            for feature in &shader.features {
+                self.require(*feature, pass, format!("for `{}`", shader.path));
+            }
+        }
+        for slot in taken {
+            if let Some(format) = self.formats[slot.part.resource.index()]
+                && let Some((feature, what)) = format_choice::feature_for(format, &slot.taker)
+            {
+                let resource = &self.expanded.resources[slot.part.resource.index()].name;
+                self.require(feature, pass, format!("{what} `{resource}` ({format})"));
+            }
+        }
+        let clears = self.clears(pass, taken);
+        let uses = taken.iter().map(|slot| self.touch(slot)).collect();
+        Some(Step {
+            pass: id,
+            name: pass.name.clone(),
+            span: pass.span,
+            shader: program.map(|program| program.shader),
+            kind,
+            bindings,
+            constants,
+            clears,
+            uses,
+        })
+    }
+
+    fn require(&mut self, feature: Feature, pass: &Pass, why: String) {
+        if !self.input.device.features.contains(&feature) {
+            let device = self.input.device.name.clone();
+            self.problems.push(BindError::MissingFeature {
+                pass: pass.name.clone(),
+                feature: feature.name(),
+                why,
+                device,
+                span: pass.span,
+            });
+        } else if !self.requirements.iter().rev().any(|known| known.feature == feature && known.pass == pass.name) {
+            self.requirements.push(Requirement { feature, pass: pass.name.clone(), span: pass.span, why });
+        }
+    }
+
+    fn kind(&mut self, pass: &Pass, program: &Program, taken: &[Taken]) -> Option<(StepKind, Option<ViewRequest>)> {
+        let main = program.main(self.shaders);
+        match &pass.kind {
+            PassKind::Draw { objects, view, cull, .. } => {
+                let vertex = program.vertex(self.shaders)?;
+                let targets = targets::targets(pass, taken, main, self.expanded, self.formats, self.input.device, self.problems)?;
+                let attributes = work::attributes(pass, vertex, self.input.published, self.problems);
+                let request = ViewRequest { kind: *view, width: targets.extent[0], height: targets.extent[1] };
+                let kind = StepKind::Draw {
+                    vertex: vertex.name.clone(),
+                    fragment: main.map(|main| main.name.clone()),
+                    list: self.draw_lists.index((*objects, *view)),
+                    view: self.views.index(request),
+                    cull: *cull,
+                    attributes,
+                    targets,
+                };
+                Some((kind, Some(request)))
+            }
+            PassKind::Fullscreen { .. } => {
+                let main = main?;
+                work::fullscreen_inputs(pass, main, self.problems);
+                let targets = targets::targets(pass, taken, Some(main), self.expanded, self.formats, self.input.device, self.problems)?;
+                Some((StepKind::Fullscreen { fragment: main.name.clone(), targets }, None))
+            }
+            PassKind::Compute { work, .. } => {
+                let main = main?;
+                let groups =
+                    work::groups(pass, work, &self.shaders[program.shader], main, self.expanded, self.input.device, self.problems)?;
+                Some((StepKind::Compute { entry: main.name.clone(), groups }, None))
+            }
+            PassKind::Copy | PassKind::Clear { .. } => None,
+        }
+    }
+
+    fn transfer(&mut self, pass: &Pass, taken: &[Taken]) -> Option<StepKind> {
+        let view = |slot: &Taken| views::whole(&self.expanded.resources[slot.part.resource.index()], &slot.part);
+        match (&pass.kind, taken) {
+            (PassKind::Copy, [source, target]) => {
+                work::check_copy(pass, source, target, self.expanded, self.formats, self.problems);
+                Some(StepKind::Copy { source: view(source), target: view(target) })
+            }
+            (PassKind::Clear { value }, [target]) => {
+                let resource = &self.expanded.resources[target.part.resource.index()];
+                let value = value.or(resource.clear).unwrap_or(ClearValue::Zero);
+                work::check_clear(pass, target, value, self.formats, self.problems);
+                Some(StepKind::Clear { target: view(target), value })
+            }
+            _ => None,
+        }
+    }
+
+    /// What every variable of the program gets.
+    fn bindings(&mut self, pass: &Pass, program: &Program, taken: &[Taken], view: Option<ViewRequest>) -> Vec<Binding> {
+        let mut bindings = Vec::new();
+        let [width, height] = self.input.output;
+        let request = view.unwrap_or(ViewRequest { kind: ViewKind::Camera, width, height });
+        for (global, stages) in &program.globals {
+            let slot = taken.iter().find(|slot| slot.name == global.name && matches!(slot.taker, Taker::Variable(..)));
+            let target = if let Some(slot) = slot {
+                views::bind(pass, slot, global, self.expanded, self.formats)
+            } else if let (true, GlobalKind::Uniform { layout }) = (global.name == "params", &global.kind) {
+                Ok(BindingTarget::Params(params::pack(pass, &self.expanded.params, layout, self.problems)))
+            } else {
+                let views = &mut self.views;
+                match tables::bind(pass, global, self.input.published, &mut || views.index(request)) {
+                    Some(target) => target,
+                    None => Err(self.unfed(pass, global, taken)),
+                }
+            };
+            match target {
+                Ok(target) => bindings.push(Binding {
+                    group: global.group,
+                    binding: global.binding,
+                    variable: global.name.clone(),
+                    stages: *stages,
+                    target,
+                }),
+                Err(problem) => self.problems.push(problem),
+            }
+        }
+        limits::check(pass, &bindings, self.input.device, self.problems);
+        bindings
+    }
+
+    fn unfed(&self, pass: &Pass, global: &crate::reflect::interface::Global, taken: &[Taken]) -> BindError {
+        let published = self.input.published;
+        let slots = pass.reads.iter().chain(&pass.writes).chain(&pass.modifies).map(|slot| slot.name.value.clone());
+        let free = slots.filter(|slot| !taken.iter().any(|taken| taken.name == *slot));
+        let names = published.tables.keys().chain(&published.material_textures).chain(&published.material_samplers).cloned();
+        let builtin = crate::plan::BuiltinSampler::ALL.into_iter().map(|sampler| sampler.name().to_owned());
+        BindError::Unfed {
+            pass: pass.name.clone(),
+            variable: global.name.clone(),
+            known: free.chain(names).chain(builtin).chain(["params".to_owned()]).collect(),
+            span: global.span,
+            pass_span: pass.span,
+        }
+    }
+
+    /// Parts that a pass produces and may leave texels of: they start from the declared value. Attachments have load operations.
+    fn clears(&self, pass: &Pass, taken: &[Taken]) -> Vec<(PartView, ClearValue)> {
+        let covered = match &pass.kind {
+            PassKind::Compute { work: Work::Cover(part), .. } => match &self.expanded.resources[part.resource.index()].shape {
+                Shape::Texture(shape) => Some(views::extent(shape, part.mip.unwrap_or(0))),
+                Shape::Buffer { .. } => None,
+            },
+            _ => None,
+        };
+        let mut clears = Vec::new();
+        for slot in taken {
+            if slot.role != Role::Produce || !matches!(slot.taker, Taker::Variable(..)) {
+                continue;
+            }
+            let resource = &self.expanded.resources[slot.part.resource.index()];
+            let view = views::whole(resource, &slot.part);
+            let full = match &resource.shape {
+                Shape::Texture(shape) => covered == Some(views::extent(shape, view.mips.start)),
+                Shape::Buffer { .. } => false,
+            };
+            if !full {
+                clears.push((view, resource.clear.unwrap_or(ClearValue::Zero)));
+            }
+        }
+        clears
+    }
+
+    fn touch(&self, slot: &Taken) -> Use {
+        let view = views::whole(&self.expanded.resources[slot.part.resource.index()], &slot.part);
+        let access = match &slot.taker {
+            Taker::Color { .. } => Access::ColorAttachment,
+            Taker::Depth if slot.role == Role::Read => Access::DepthReadOnly,
+            Taker::Depth => Access::DepthAttachment,
+            Taker::Transfer if slot.name == "read" => Access::CopySource,
+            Taker::Transfer => Access::CopyTarget,
+            Taker::Variable(global) => match (&global.kind, slot.role) {
+                (GlobalKind::Uniform { .. }, _) => Access::Uniform,
+                (GlobalKind::Storage { .. }, Role::Read) => Access::StorageRead,
+                (GlobalKind::Storage { .. }, Role::Produce) => Access::StorageWrite,
+                (GlobalKind::Storage { .. }, Role::Modify) => Access::StorageReadWrite,
+                (GlobalKind::StorageTexture { access, .. }, _) => match access {
+                    StorageAccess::Read => Access::StorageRead,
+                    StorageAccess::Write => Access::StorageWrite,
+                    StorageAccess::ReadWrite => Access::StorageReadWrite,
+                },
+                _ => Access::Sampled,
+            },
+        };
+        Use {
+            resource: slot.part.resource,
+            mips: view.mips,
+            layers: view.layers,
+            role: slot.role,
+            access,
+            version: slot.part.version,
+            slot: slot.name.clone(),
+            span: slot.part.span,
+        }
+    }
+}

@@ -1,0 +1,2 @@
+//! Plans as text, JSON and Graphviz.
+pub(crate) mod units;

@@ -1,0 +1,98 @@
+//! The values of names while a pipeline is expanded.
+
+use std::collections::HashSet;
+
+use super::error::ExpandError;
+use super::types::{Param, Value};
+use crate::diagnostic::Diagnostic;
+use crate::expression::kind_of;
+use crate::published::SceneCounts;
+use crate::source::Span;
+use crate::validate::types::PlacedExpr;
+
+/// What expressions may name, and the problems found so far.
+pub(super) struct Environment<'a> {
+    /// Parameters with their values.
+    pub params: Vec<Param>,
+    /// Loop indices, outermost first.
+    pub indices: Vec<(String, u32)>,
+    /// Width and height of the rendered image.
+    pub output: [u32; 2],
+    /// How many of each thing the scene has.
+    pub counts: &'a SceneCounts,
+    /// Everything wrong.
+    pub problems: Vec<Diagnostic>,
+    /// Codes and places of `problems`.
+    pub reported: HashSet<(&'static str, Span)>,
+}
+
+impl Environment<'_> {
+    /// Records a problem; one place is reported once, however many iterations of a loop meet it.
+    pub fn report(&mut self, error: ExpandError) {
+        let problem = Diagnostic::from(error);
+        let place = problem.primary.as_ref().map_or(Span::NOWHERE, |label| label.span);
+        if self.reported.insert((problem.code, place)) {
+            self.problems.push(problem);
+        }
+    }
+
+    fn lookup(&self, name: &str) -> Option<Value> {
+        if let Some((_, index)) = self.indices.iter().rev().find(|(variable, _)| variable == name) {
+            return Some(Value::Int(i64::from(*index)));
+        }
+        match name {
+            "output.width" => return Some(Value::Int(i64::from(self.output[0]))),
+            "output.height" => return Some(Value::Int(i64::from(self.output[1]))),
+            _ => {}
+        }
+        if let Some(count) = name.strip_prefix("scene.") {
+            return Some(Value::Int(i64::from(self.counts.get(count).copied().unwrap_or(0))));
+        }
+        self.params.iter().find(|param| param.name == name).map(|param| param.value.clone())
+    }
+
+    /// The value of an expression. `what` names it in messages: "the width of `radiance`".
+    pub fn value(&mut self, expr: &PlacedExpr, what: &str) -> Option<Value> {
+        match expr.expression.evaluate(&|name| self.lookup(name)) {
+            Ok(value) => Some(value),
+            Err(reason) => self.bad(what, reason, expr.span),
+        }
+    }
+
+    /// A whole number that is not negative.
+    pub fn count(&mut self, expr: &PlacedExpr, what: &str) -> Option<u64> {
+        match self.value(expr, what)? {
+            Value::Int(value) if value >= 0 => Some(value as u64),
+            Value::Int(value) => self.bad(what, format!("it is {value}, below zero"), expr.span),
+            Value::Float(value) => {
+                self.bad(what, format!("it is {value}, and must be whole; use ceil(..), floor(..) or round(..)"), expr.span)
+            }
+            other => self.bad(what, format!("it must be a whole number, not {}", kind_of(&other)), expr.span),
+        }
+    }
+
+    /// Any number.
+    pub fn number(&mut self, expr: &PlacedExpr, what: &str) -> Option<f64> {
+        match self.value(expr, what)? {
+            Value::Int(value) => Some(value as f64),
+            Value::Float(value) => Some(value),
+            Value::Bool(value) => Some(f64::from(u8::from(value))),
+            Value::Word(index, _) => Some(f64::from(index)),
+            Value::Vector(_) => self.bad(what, "it must be a number, not a vector".to_owned(), expr.span),
+        }
+    }
+
+    /// A truth value.
+    pub fn truth(&mut self, expr: &PlacedExpr, what: &str) -> Option<bool> {
+        match self.value(expr, what)? {
+            Value::Bool(value) => Some(value),
+            other => self.bad(what, format!("it must be true or false, not {}", kind_of(&other)), expr.span),
+        }
+    }
+
+    /// Reports a bad value; always `None`.
+    pub fn bad<T>(&mut self, what: &str, reason: String, span: Span) -> Option<T> {
+        self.report(ExpandError::BadValue { what: what.to_owned(), reason, span });
+        None
+    }
+}

@@ -1,0 +1,74 @@
+//! What can be wrong once expressions have values.
+
+use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
+use crate::source::Span;
+
+/// A problem found by expansion.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[allow(missing_docs)]
+pub enum ExpandError {
+    #[error("there is no parameter `{name}` to set")]
+    UnknownParam { name: String, known: Vec<String> },
+    #[error("parameter `{name}` can't be set to `{given}`: {reason}")]
+    BadSet { name: String, given: String, reason: String, span: Span },
+    #[error("there is no output `{name}`")]
+    UnknownOutput { name: String, known: Vec<String> },
+    #[error("{what}: {reason}")]
+    BadValue { what: String, reason: String, span: Span },
+    #[error("resource `{name}`: {what} is 0")]
+    SizeZero { name: String, what: &'static str, span: Span },
+    #[error("resource `{name}`: {what} is {value}, and {device} allows {limit}")]
+    SizeOverLimit { name: String, what: &'static str, value: u64, limit: u64, device: String, span: Span },
+    #[error("resource `{name}`: {reason}")]
+    BadResource { name: String, reason: String, hint: &'static str, span: Span },
+    #[error("pass `{pass}`: `{resource}` has no {what} {index}: it has {count}")]
+    PartOutOfRange { pass: String, resource: String, what: &'static str, index: i64, count: u32, span: Span },
+    #[error("pass `{pass}`: `{resource}` is a buffer and has no {what}")]
+    PartOfBuffer { pass: String, resource: String, what: &'static str, span: Span },
+    #[error("loop `{name}` makes the pipeline longer than {limit} passes")]
+    TooManyPasses { name: String, limit: usize, span: Span },
+    #[error("`{path}` stands for {count} passes here")]
+    AmbiguousPass { path: String, count: usize, span: Span },
+    #[error("`{path}` does not stand in this scene or with these parameters, and its value is read")]
+    AbsentPass { path: String, span: Span },
+}
+
+impl From<ExpandError> for Diagnostic {
+    fn from(error: ExpandError) -> Diagnostic {
+        let message = error.to_string();
+        match error {
+            ExpandError::UnknownParam { name, known } => {
+                let names = list_names(known.iter().map(String::as_str));
+                let hint = did_you_mean(&name, known.iter().map(String::as_str));
+                Diagnostic::error("expand::unknown-param", message).note(format!("the pipeline's parameters: {names}")).maybe_hint(hint)
+            }
+            ExpandError::BadSet { span, .. } => Diagnostic::error("expand::bad-set", message).at(span, "declared here"),
+            ExpandError::UnknownOutput { name, known } => {
+                let names = list_names(known.iter().map(String::as_str));
+                let hint = did_you_mean(&name, known.iter().map(String::as_str));
+                Diagnostic::error("expand::unknown-output", message).note(format!("the pipeline's outputs: {names}")).maybe_hint(hint)
+            }
+            ExpandError::BadValue { span, .. } => Diagnostic::error("expand::bad-value", message).at(span, "this value"),
+            ExpandError::SizeZero { span, .. } => Diagnostic::error("expand::size-zero", message)
+                .at(span, "computed here")
+                .hint("every extent is at least 1; guard a size that may vanish with `max(1, ..)`"),
+            ExpandError::SizeOverLimit { span, .. } => Diagnostic::error("expand::size-over-limit", message)
+                .at(span, "computed here")
+                .hint("choose a smaller size, or render a smaller image"),
+            ExpandError::BadResource { hint, span, .. } => Diagnostic::error("expand::bad-resource", message).at(span, "here").hint(hint),
+            ExpandError::PartOutOfRange { span, .. } => {
+                Diagnostic::error("expand::part-out-of-range", message).at(span, "this part").hint("indices start at 0")
+            }
+            ExpandError::PartOfBuffer { span, .. } => Diagnostic::error("expand::part-of-buffer", message).at(span, "this part"),
+            ExpandError::TooManyPasses { span, .. } => Diagnostic::error("expand::too-many-passes", message)
+                .at(span, "this loop")
+                .hint("lower its count, or do the work of many iterations in one Compute"),
+            ExpandError::AmbiguousPass { span, .. } => {
+                Diagnostic::error("expand::ambiguous-pass", message).at(span, "this name").hint("name one iteration: `loop[3].pass`")
+            }
+            ExpandError::AbsentPass { span, .. } => Diagnostic::error("expand::absent-pass", message)
+                .at(span, "this name")
+                .hint("give the reader the same `when` or `has`, or read the final value"),
+        }
+    }
+}

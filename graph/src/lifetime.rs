@@ -1,0 +1,103 @@
+//! From which step to which each resource is in use, and which resources outlive the frame.
+//!
+//! Lifetimes are per whole resource: one part in use keeps all of it.
+
+use std::ops::Range;
+
+use crate::bind::types::Bound;
+use crate::expand::types::PassId;
+use crate::plan::Retained;
+use crate::schedule::Schedule;
+
+/// When each resource is in use, by resource id.
+#[derive(Debug, Clone, PartialEq, Eq, Default)]
+pub struct Lifetimes {
+    /// The steps from the first to the last that touch it, by place in the order, end exclusive. Empty if none does.
+    pub ranges: Vec<Range<usize>>,
+    /// Why it shares memory with nothing, if so.
+    pub retained: Vec<Option<Retained>>,
+}
+
+/// Lifetimes in the chosen order.
+pub fn lifetimes(bound: &Bound, schedule: &Schedule) -> Lifetimes {
+    let mut ranges = Touches::new(bound).ranges(&schedule.order);
+    // An output that nothing writes is cleared by a step that does not name it.
+    let mut places = vec![None; bound.steps.len()];
+    for (place, pass) in schedule.order.iter().enumerate() {
+        places[pass.index()] = Some(place);
+    }
+    for (pass, part, _) in &schedule.initial_clears {
+        if let (Some(place), Some(range)) = (places[pass.index()], ranges.get_mut(part.resource.index())) {
+            *range = if Range::is_empty(range) { place..place + 1 } else { range.start.min(place)..range.end.max(place + 1) };
+        }
+    }
+    let retained = retained(bound).into_iter().map(|output| output.then_some(Retained::Output)).collect();
+    Lifetimes { ranges, retained }
+}
+
+/// By resource, whether an asked-for output shows a part of it.
+pub(crate) fn retained(bound: &Bound) -> Vec<bool> {
+    let mut retained = vec![false; bound.expanded.resources.len()];
+    for output in &bound.expanded.outputs {
+        if let Some(entry) = retained.get_mut(output.part.resource.index()) {
+            *entry = true;
+        }
+    }
+    retained
+}
+
+/// For each pass the resources that it touches, each once. Flat, since every candidate order walks all of it.
+#[derive(Debug, Clone)]
+pub(crate) struct Touches {
+    ends: Vec<u32>,
+    resources: Vec<u32>,
+    resource_count: usize,
+}
+
+impl Touches {
+    /// Reads the uses of all steps.
+    pub(crate) fn new(bound: &Bound) -> Touches {
+        let resource_count = bound.expanded.resources.len();
+        let mut touches = Touches { ends: Vec::with_capacity(bound.steps.len()), resources: Vec::new(), resource_count };
+        let mut seen_by = vec![u32::MAX; resource_count];
+        for (pass, step) in bound.steps.iter().enumerate() {
+            let declared = step.clears.iter().map(|(part, _)| part.resource);
+            for resource in step.uses.iter().map(|used| used.resource).chain(declared) {
+                if let Some(seen) = seen_by.get_mut(resource.index())
+                    && std::mem::replace(seen, pass as u32) != pass as u32
+                {
+                    touches.resources.push(resource.0);
+                }
+            }
+            touches.ends.push(touches.resources.len() as u32);
+        }
+        touches
+    }
+
+    /// What a pass touches.
+    pub(crate) fn of(&self, pass: PassId) -> &[u32] {
+        let index = pass.index();
+        let start = index.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
+        &self.resources[start..self.ends[index] as usize]
+    }
+
+    /// How many resources there are.
+    pub(crate) fn resource_count(&self) -> usize {
+        self.resource_count
+    }
+
+    /// First to last touching place of each resource in an order, end exclusive.
+    pub(crate) fn ranges(&self, order: &[PassId]) -> Vec<Range<usize>> {
+        let mut ranges = vec![0..0; self.resource_count];
+        for (place, pass) in order.iter().enumerate() {
+            for resource in self.of(*pass) {
+                let range = &mut ranges[*resource as usize];
+                if Range::is_empty(range) {
+                    range.start = place;
+                }
+                range.end = place + 1;
+            }
+        }
+        ranges
+    }
+}

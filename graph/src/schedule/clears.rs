@@ -1,0 +1,54 @@
+//! Parts that nothing produces, and the first step that needs each: that step fills them with the declared value.
+
+use std::collections::BTreeMap;
+
+use super::part::{Rect, merged};
+use super::versions::{Grid, UseRef};
+use crate::bind::types::Bound;
+use crate::expand::types::{ClearValue, PassId, ResourceId};
+use crate::plan::PartView;
+
+/// All implicit clears, by the place of their step in the order, then by resource and part.
+pub(crate) fn initial_clears(bound: &Bound, grids: &[Grid], order: &[PassId]) -> Vec<(PassId, PartView, ClearValue)> {
+    let mut places: Vec<Option<usize>> = vec![None; bound.steps.len()];
+    for (place, pass) in order.iter().enumerate() {
+        places[pass.index()] = Some(place);
+    }
+    let place_of = |used: &UseRef| places[used.pass.index()];
+    let mut needed: BTreeMap<(usize, usize), Vec<Rect>> = BTreeMap::new();
+    for (index, grid) in grids.iter().enumerate() {
+        if bound.expanded.resources[index].clear.is_none() {
+            continue;
+        }
+        let mut first: Vec<Option<usize>> = vec![None; grid.cells.len()];
+        let mut need = |cell: usize, place: Option<usize>| {
+            first[cell] = [first[cell], place].into_iter().flatten().min();
+        };
+        for (cell, content) in grid.cells.iter().enumerate().filter(|(_, content)| !content.produced) {
+            // A modifier that does not run leaves the value as declared.
+            need(cell, content.writers.iter().filter_map(place_of).min());
+        }
+        for region in &grid.regions {
+            // An output that no step touches is filled by the first step there is.
+            let shown = (!region.outputs.is_empty() && !order.is_empty()).then_some(0);
+            let reader = region.readers.iter().filter_map(place_of).min();
+            for cell in &region.unwritten {
+                need(*cell, [shown, reader].into_iter().flatten().min());
+            }
+        }
+        for (cell, place) in first.iter().enumerate() {
+            if let Some(place) = place {
+                needed.entry((*place, index)).or_default().push(grid.cells[cell].rect.clone());
+            }
+        }
+    }
+    let mut clears = Vec::new();
+    for ((place, index), rects) in needed {
+        let resource = &bound.expanded.resources[index];
+        let Some(value) = resource.clear else { continue };
+        for rect in merged(rects) {
+            clears.push((order[place], rect.view(ResourceId(index as u32), &resource.shape), value));
+        }
+    }
+    clears
+}

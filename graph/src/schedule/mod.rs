@@ -1,0 +1,57 @@
+//! Which passes run, and in which order.
+//!
+//! From the parts that each pass touches follow the producers, modifiers and readers of every part ([`versions`]), what must
+//! come before what ([`dag`]), which passes nothing needs ([`cull`]) and an order that takes little memory ([`order`]). The
+//! order of passes in the file carries no meaning but among the modifiers of one part; where something else would decide, that
+//! is an error. All errors are found before any is returned, whatever outputs are asked for.
+//!
+//! Accepted: the warning about unread resources knows only the outputs that were asked for.
+
+mod clears;
+mod cull;
+mod cycle;
+mod dag;
+mod order;
+pub(crate) mod part;
+mod problems;
+mod versions;
+
+use crate::allocate::model::Model;
+use crate::bind::types::Bound;
+use crate::diagnostic::{Diagnostic, has_errors};
+use crate::expand::types::{ClearValue, PassId};
+use crate::plan::{Culled, PartView};
+
+/// What runs, in order, and what does not.
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Schedule {
+    /// The passes that run, in the order in which they do.
+    pub order: Vec<PassId>,
+    /// The same passes in the declared order: always the ready one that stands first in the file.
+    pub declared: Vec<PassId>,
+    /// The passes that do not run, in the order of the file.
+    pub culled: Vec<Culled>,
+    /// Parts that nothing produces and that are used all the same, with the step before which they get their declared value.
+    /// In the order of the steps.
+    pub initial_clears: Vec<(PassId, PartView, ClearValue)>,
+}
+
+/// Schedules a bound pipeline. The schedule is there if none of the problems is an error.
+pub fn schedule(bound: &Bound) -> (Option<Schedule>, Vec<Diagnostic>) {
+    let grids = versions::versions(bound);
+    let mut found = problems::problems(bound, &grids);
+    let dag = dag::dag(bound, &grids);
+    found.extend(cycle::cycles(bound, &dag));
+    // Stable: problems of one place keep the order in which they were found.
+    found.sort_by_key(|diagnostic| diagnostic.primary.as_ref().map(|label| label.span));
+    if has_errors(&found) {
+        return (None, found);
+    }
+    let alive = cull::alive(&dag, &grids);
+    let model = Model::new(bound, |pass| alive[pass]);
+    let orders = order::orders(&dag, &alive, &model);
+    let culled = cull::culled(bound, &dag, &alive);
+    let initial_clears = clears::initial_clears(bound, &grids, &orders.chosen);
+    let schedule = Schedule { order: orders.chosen, declared: orders.declared, culled, initial_clears };
+    (Some(schedule), found)
+}

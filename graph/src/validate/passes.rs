@@ -1,0 +1,354 @@
+//! Passes and loops: every name in them resolved.
+
+use super::error::ValidateError;
+use super::resources::plain_clear;
+use super::scope::Scope;
+use super::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
+use crate::expand::types::Located;
+use crate::published::DrawFilter;
+use crate::source::Span;
+use crate::syntax::document::{BlendDoc, EachDoc, Entries, Expr, ObjectsDoc, PassDoc, ResourceDoc, Text, ViewDoc};
+
+/// Loops inside loops beyond this are refused.
+const MAX_LOOP_DEPTH: usize = 8;
+
+/// The paths of all passes and loops, in the order of the file.
+pub(super) fn paths(passes: &Entries<PassDoc>, outer: &str, depth: usize, found: &mut Vec<String>) {
+    for (name, pass) in passes {
+        let path = if outer.is_empty() { name.value.clone() } else { format!("{outer}.{}", name.value) };
+        if let PassDoc::Repeat { passes, .. } = pass
+            && depth < MAX_LOOP_DEPTH
+        {
+            paths(passes, &path, depth + 1, found);
+        }
+        found.push(path);
+    }
+}
+
+/// Checks passes and loops, in the order of the file.
+pub(super) fn items(scope: &mut Scope<'_>, passes: &Entries<PassDoc>, resources: &Entries<ResourceDoc>) -> Vec<Item> {
+    passes.iter().filter_map(|(name, pass)| item(scope, name, pass, resources)).collect()
+}
+
+fn item(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc, resources: &Entries<ResourceDoc>) -> Option<Item> {
+    scope.check_name(name);
+    match pass {
+        PassDoc::Repeat { when, has, each, r#as, passes, .. } => {
+            let condition = condition(scope, when.as_ref(), has.as_ref());
+            let each = match &each.value {
+                EachDoc::Count(count) => scope.expression(count).map(Each::Count),
+                EachDoc::Face(cube) => face_loop(scope, name, cube, resources),
+            };
+            scope.check_name(r#as);
+            if scope.variables.len() >= MAX_LOOP_DEPTH {
+                bad(scope, name, format!("loops are nested deeper than {MAX_LOOP_DEPTH} levels"), None, name.span);
+                return None;
+            }
+            if scope.variables.contains(&r#as.value) || scope.params.contains(&r#as.value.as_str()) {
+                let reason = format!("`{}` is already the name of a parameter or of an outer loop's index", r#as.value);
+                bad(scope, name, reason, Some("choose another name under `as`"), r#as.span);
+            }
+            if passes.is_empty() {
+                bad(scope, name, "this loop repeats no pass".to_owned(), None, name.span);
+            }
+            scope.variables.push(r#as.value.clone());
+            let items = items(scope, passes, resources);
+            scope.variables.pop();
+            Some(Item::Repeat(Box::new(RepeatDecl {
+                name: located(name),
+                condition: condition?,
+                each: each?,
+                variable: r#as.value.clone(),
+                items,
+            })))
+        }
+        _ => self::pass(scope, name, pass).map(|pass| Item::Pass(Box::new(pass))),
+    }
+}
+
+fn face_loop(scope: &mut Scope<'_>, name: &Text, cube: &Text, resources: &Entries<ResourceDoc>) -> Option<Each> {
+    let part = scope.part(cube)?;
+    let (_, resource) = resources.get_index(part.resource.index())?;
+    if matches!(resource, ResourceDoc::Texture { dimension: crate::syntax::document::DimensionDoc::Cube, .. }) {
+        return Some(Each::Face);
+    }
+    bad(scope, name, format!("`{}` has no faces: it is not a cube texture", cube.value), Some("loop over a count instead"), cube.span);
+    None
+}
+
+/// The fields that several kinds share.
+struct Common<'a> {
+    when: Option<&'a Expr>,
+    has: Option<&'a Text>,
+    shader: Option<&'a Text>,
+    constants: Option<&'a Entries<Expr>>,
+    read: Vec<(Located<String>, &'a Text)>,
+    write: Vec<(Located<String>, &'a Text)>,
+    modify: Vec<(Located<String>, &'a Text)>,
+    after: &'a [Text],
+}
+
+fn slots(entries: &Entries<Text>) -> Vec<(Located<String>, &Text)> {
+    entries.iter().map(|(name, part)| (located(name), part)).collect()
+}
+
+fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> {
+    let (common, kind) = match pass {
+        PassDoc::Draw {
+            when,
+            has,
+            shader,
+            vertex,
+            fragment,
+            constants,
+            objects,
+            view,
+            depth,
+            cull,
+            blend,
+            read,
+            write,
+            modify,
+            after,
+            ..
+        } => {
+            let view = match &view.value {
+                ViewDoc::Camera => Some(View::Camera),
+                ViewDoc::DirectionalLight(index) => scope.expression(index).map(View::DirectionalLight),
+                ViewDoc::LocalLight(index, face) => match (scope.expression(index), scope.expression(face)) {
+                    (Some(index), Some(face)) => Some(View::LocalLight(index, face)),
+                    _ => None,
+                },
+            };
+            let written = |slot: &str, entries: &Entries<Text>| entries.keys().any(|key| key.value == slot);
+            let attached = written("depth", write) || written("depth", modify) || written("depth", read);
+            match depth {
+                Some(depth) if !attached => {
+                    let hint = Some("name the depth texture: write: {\"depth\": \"..\"}");
+                    bad(scope, name, "it tests depth, and has no slot `depth`".to_owned(), hint, depth.span);
+                }
+                None if attached => {
+                    let hint = Some("add depth: (test: Less), or whatever the pass needs");
+                    bad(scope, name, "it has a slot `depth`, and says no depth test".to_owned(), hint, name.span);
+                }
+                Some(depth) if depth.value.write && written("depth", read) => {
+                    let hint = Some("add `write: false` to `depth`, or move the slot to `modify`");
+                    bad(scope, name, "it writes depth, and its slot `depth` is under `read`".to_owned(), hint, depth.span);
+                }
+                Some(depth) if !depth.value.write && written("depth", write) => {
+                    let hint = Some("move the slot `depth` to `read`");
+                    bad(scope, name, "it does not write depth, and its slot `depth` is under `write`".to_owned(), hint, depth.span);
+                }
+                _ => {}
+            }
+            let kind = view.map(|view| PassKindDecl::Draw {
+                vertex: vertex.as_ref().map(located),
+                fragment: fragment.as_ref().map(located),
+                objects: filter(*objects),
+                view,
+                depth: depth.as_ref().map(|depth| depth.value),
+                cull: *cull,
+                blend: blends(scope, name, blend, write, modify),
+            });
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    shader: Some(shader),
+                    constants: Some(constants),
+                    read: slots(read),
+                    write: slots(write),
+                    modify: slots(modify),
+                    after,
+                },
+                kind,
+            )
+        }
+        PassDoc::Fullscreen { when, has, shader, entry, constants, blend, read, write, modify, after, .. } => {
+            let kind = PassKindDecl::Fullscreen { entry: entry.as_ref().map(located), blend: blends(scope, name, blend, write, modify) };
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    shader: Some(shader),
+                    constants: Some(constants),
+                    read: slots(read),
+                    write: slots(write),
+                    modify: slots(modify),
+                    after,
+                },
+                Some(kind),
+            )
+        }
+        PassDoc::Compute { when, has, shader, entry, constants, cover, count, groups, read, write, modify, after, .. } => {
+            let work = match (cover, count, groups) {
+                (Some(cover), None, None) => scope.part(cover).map(WorkDecl::Cover),
+                (None, Some(count), None) => scope.expression(count).map(WorkDecl::Count),
+                (None, None, Some(groups)) => {
+                    let (x, y, z) = &groups.value;
+                    match (scope.expression(x), scope.expression(y), scope.expression(z)) {
+                        (Some(x), Some(y), Some(z)) => Some(WorkDecl::Groups(x, y, z)),
+                        _ => None,
+                    }
+                }
+                _ => {
+                    let hint = Some("`cover` runs once per texel of a part, `count` so many times, `groups` so many workgroups");
+                    bad(scope, name, "a Compute says exactly one of `cover`, `count` and `groups`".to_owned(), hint, name.span);
+                    None
+                }
+            };
+            let kind = work.map(|work| PassKindDecl::Compute { entry: entry.as_ref().map(located), work });
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    shader: Some(shader),
+                    constants: Some(constants),
+                    read: slots(read),
+                    write: slots(write),
+                    modify: slots(modify),
+                    after,
+                },
+                kind,
+            )
+        }
+        PassDoc::Copy { when, has, read, write, after, .. } => {
+            let slot = |name: &str, text: &Text| Located { value: name.to_owned(), span: text.span };
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    shader: None,
+                    constants: None,
+                    read: vec![(slot("read", read), read)],
+                    write: vec![(slot("write", write), write)],
+                    modify: Vec::new(),
+                    after,
+                },
+                Some(PassKindDecl::Copy),
+            )
+        }
+        PassDoc::Clear { when, has, write, value, after, .. } => (
+            Common {
+                when: when.as_ref(),
+                has: has.as_ref(),
+                shader: None,
+                constants: None,
+                read: Vec::new(),
+                write: vec![(Located { value: "write".to_owned(), span: write.span }, write)],
+                modify: Vec::new(),
+                after,
+            },
+            Some(PassKindDecl::Clear { value: value.as_ref().map(|value| plain_clear(value.value)) }),
+        ),
+        PassDoc::Repeat { .. } => return None,
+    };
+    finish(scope, name, common, kind)
+}
+
+fn finish(scope: &mut Scope<'_>, name: &Text, common: Common<'_>, kind: Option<PassKindDecl>) -> Option<PassDecl> {
+    let condition = condition(scope, common.when, common.has);
+    let before = scope.problems.len();
+    let mut parts = |slots: Vec<(Located<String>, &Text)>, writes: bool| -> Vec<(Located<String>, PartExpr)> {
+        let mut found = Vec::new();
+        for (slot, text) in slots {
+            let Some(part) = scope.part(text) else { continue };
+            if writes && let Some(version) = &part.version {
+                bad(scope, name, "`@pass` names a value to read, and nothing can be written there".to_owned(), None, version.span);
+                continue;
+            }
+            found.push((slot, part));
+        }
+        found
+    };
+    let reads = parts(common.read, false);
+    let writes = parts(common.write, true);
+    let modifies = parts(common.modify, true);
+    if writes.is_empty() && modifies.is_empty() && scope.problems.len() == before {
+        bad(scope, name, "it writes nothing, so that nothing could ever need it".to_owned(), Some("add `write` or `modify`"), name.span);
+    }
+    check_slots_distinct(scope, name, &[("read", &reads), ("write", &writes), ("modify", &modifies)]);
+    let mut constants = Vec::new();
+    for (constant, value) in common.constants.into_iter().flatten() {
+        if let Some(value) = scope.expression(value) {
+            constants.push((located(constant), value));
+        }
+    }
+    let after = common.after.iter().filter_map(|path| scope.pass_path(&path.value, path.span)).collect();
+    Some(PassDecl {
+        name: located(name),
+        condition: condition?,
+        kind: kind?,
+        shader: common.shader.map(located),
+        constants,
+        reads,
+        writes,
+        modifies,
+        after,
+    })
+}
+
+type Group<'a> = (&'static str, &'a [(Located<String>, PartExpr)]);
+
+fn check_slots_distinct(scope: &mut Scope<'_>, name: &Text, groups: &[Group<'_>]) {
+    for (index, (list, slots)) in groups.iter().enumerate() {
+        for (slot, _) in *slots {
+            let elsewhere = groups[..index].iter().find(|(_, others)| others.iter().any(|(other, _)| other.value == slot.value));
+            if let Some((other, _)) = elsewhere {
+                let reason = format!("the slot `{}` stands under `{other}` and under `{list}`", slot.value);
+                bad(scope, name, reason, Some("what keeps its content and is changed belongs under `modify` alone"), slot.span);
+            }
+        }
+    }
+}
+
+fn blends(
+    scope: &mut Scope<'_>,
+    name: &Text,
+    blend: &Entries<BlendDoc>,
+    write: &Entries<Text>,
+    modify: &Entries<Text>,
+) -> Vec<(Located<String>, BlendDoc)> {
+    for slot in blend.keys() {
+        if !write.contains_key(slot) && !modify.contains_key(slot) {
+            let known: Vec<String> = write.keys().chain(modify.keys()).map(|key| key.value.clone()).collect();
+            scope.report(ValidateError::Unknown { what: "slot", name: slot.value.clone(), known, span: slot.span });
+        } else if slot.value == "depth" {
+            bad(scope, name, "depth can't be blended".to_owned(), None, slot.span);
+        }
+    }
+    blend.iter().map(|(slot, blend)| (located(slot), *blend)).collect()
+}
+
+fn condition(scope: &mut Scope<'_>, when: Option<&Expr>, has: Option<&Text>) -> Option<Condition> {
+    let when: Option<Option<PlacedExpr>> = match when {
+        None => Some(None),
+        Some(when) => scope.expression(when).map(Some),
+    };
+    if let Some(has) = has
+        && !scope.counts.contains(&has.value)
+    {
+        let known = scope.counts.to_vec();
+        scope.report(ValidateError::Unknown { what: "scene count", name: has.value.clone(), known, span: has.span });
+        return None;
+    }
+    Some(Condition { when: when?, has: has.map(|has| has.value.clone()) })
+}
+
+fn filter(objects: ObjectsDoc) -> DrawFilter {
+    match objects {
+        ObjectsDoc::Opaque => DrawFilter::Opaque,
+        ObjectsDoc::Masked => DrawFilter::Masked,
+        ObjectsDoc::Solid => DrawFilter::Solid,
+        ObjectsDoc::Blended => DrawFilter::Blended,
+        ObjectsDoc::All => DrawFilter::All,
+    }
+}
+
+fn located(text: &Text) -> Located<String> {
+    Located { value: text.value.clone(), span: text.span }
+}
+
+fn bad(scope: &mut Scope<'_>, pass: &Text, reason: String, hint: Option<&str>, span: Span) {
+    scope.report(ValidateError::BadPass { pass: pass.value.clone(), reason, hint: hint.map(str::to_owned), span });
+}

@@ -1,0 +1,224 @@
+//! The output of validation: the document with names resolved and expressions parsed, loops and conditions still in place.
+
+use crate::expand::types::{ClearValue, Dimension, Located, ResourceId, Value};
+use crate::expression::Expression;
+use crate::format::Format;
+use crate::published::DrawFilter;
+use crate::source::Span;
+use crate::syntax::document::{BlendDoc, CullDoc, DepthDoc};
+
+/// A document whose every name stands for something.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Validated {
+    /// The pipeline's text.
+    pub doc: String,
+    /// Parameters in the order of the file.
+    pub params: Vec<ParamDecl>,
+    /// By [`ResourceId`].
+    pub resources: Vec<ResourceDecl>,
+    /// Passes and loops in the order of the file.
+    pub items: Vec<Item>,
+    /// Outputs in the order of the file.
+    pub outputs: Vec<(Located<String>, PartExpr)>,
+}
+
+/// A parameter.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ParamDecl {
+    /// Its name.
+    pub name: Located<String>,
+    /// Its default; decides the type.
+    pub default: Value,
+    /// Smallest and largest value.
+    pub range: Option<(f64, f64)>,
+    /// The words, if it is one.
+    pub options: Vec<String>,
+    /// For people.
+    pub unit: Option<String>,
+    /// For people.
+    pub doc: String,
+}
+
+/// An expression with its place.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PlacedExpr {
+    /// What to compute.
+    pub expression: Expression,
+    /// Where it is written.
+    pub span: Span,
+}
+
+/// A resource.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ResourceDecl {
+    /// Its name.
+    pub name: Located<String>,
+    /// What it is.
+    pub kind: ResourceKind,
+    /// The declared value.
+    pub clear: Option<ClearValue>,
+}
+
+/// What a resource is.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum ResourceKind {
+    Texture {
+        dimension: Dimension,
+        formats: Vec<Format>,
+        format_span: Span,
+        size: Size,
+        size_span: Span,
+        layers: Option<PlacedExpr>,
+        mips: Option<Mips>,
+        samples: Option<PlacedExpr>,
+    },
+    Buffer {
+        size: PlacedExpr,
+    },
+}
+
+/// The extent of a texture; its number of dimensions fits the texture's.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum Size {
+    Output,
+    Scaled(PlacedExpr),
+    Line(PlacedExpr),
+    Square(PlacedExpr),
+    Exact(PlacedExpr, PlacedExpr),
+    Cube(PlacedExpr),
+    Volume(PlacedExpr, PlacedExpr, PlacedExpr),
+}
+
+/// How many mip levels.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum Mips {
+    Full,
+    Count(PlacedExpr),
+}
+
+/// A part of a resource whose indices are expressions.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PartExpr {
+    /// Whose part.
+    pub resource: ResourceId,
+    /// `.mip(..)`
+    pub mip: Option<PlacedExpr>,
+    /// `.layer(..)` or `.face(..)`
+    pub layer: Option<PlacedExpr>,
+    /// `@pass`
+    pub version: Option<Located<String>>,
+    /// The whole reference.
+    pub span: Span,
+}
+
+/// A pass or a loop.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum Item {
+    Pass(Box<PassDecl>),
+    Repeat(Box<RepeatDecl>),
+}
+
+/// When a pass or loop stands.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Condition {
+    /// Must be true.
+    pub when: Option<PlacedExpr>,
+    /// The scene must have some of these.
+    pub has: Option<String>,
+}
+
+/// A loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct RepeatDecl {
+    /// Its name.
+    pub name: Located<String>,
+    /// When it stands.
+    pub condition: Condition,
+    /// How often.
+    pub each: Each,
+    /// The name of the index.
+    pub variable: String,
+    /// What is repeated.
+    pub items: Vec<Item>,
+}
+
+/// What a loop runs over.
+#[derive(Debug, Clone, PartialEq)]
+pub enum Each {
+    /// 0 up to a count.
+    Count(PlacedExpr),
+    /// The six faces of a cube texture.
+    Face,
+}
+
+/// A pass.
+#[derive(Debug, Clone, PartialEq)]
+pub struct PassDecl {
+    /// Its name.
+    pub name: Located<String>,
+    /// When it stands.
+    pub condition: Condition,
+    /// What it does.
+    pub kind: PassKindDecl,
+    /// Its shader file.
+    pub shader: Option<Located<String>>,
+    /// Values of overrides.
+    pub constants: Vec<(Located<String>, PlacedExpr)>,
+    /// Inputs.
+    pub reads: Vec<(Located<String>, PartExpr)>,
+    /// Outputs.
+    pub writes: Vec<(Located<String>, PartExpr)>,
+    /// Outputs that keep what is there.
+    pub modifies: Vec<(Located<String>, PartExpr)>,
+    /// Passes that must come first.
+    pub after: Vec<Located<String>>,
+}
+
+/// What a pass does.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum PassKindDecl {
+    Draw {
+        vertex: Option<Located<String>>,
+        fragment: Option<Located<String>>,
+        objects: DrawFilter,
+        view: View,
+        depth: Option<DepthDoc>,
+        cull: CullDoc,
+        blend: Vec<(Located<String>, BlendDoc)>,
+    },
+    Fullscreen {
+        entry: Option<Located<String>>,
+        blend: Vec<(Located<String>, BlendDoc)>,
+    },
+    Compute {
+        entry: Option<Located<String>>,
+        work: WorkDecl,
+    },
+    Copy,
+    Clear {
+        value: Option<ClearValue>,
+    },
+}
+
+/// From where a Draw draws.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum View {
+    Camera,
+    DirectionalLight(PlacedExpr),
+    LocalLight(PlacedExpr, PlacedExpr),
+}
+
+/// How much a Compute works.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum WorkDecl {
+    Cover(PartExpr),
+    Count(PlacedExpr),
+    Groups(PlacedExpr, PlacedExpr, PlacedExpr),
+}

@@ -1,0 +1,206 @@
+//! The shadow view of a directional light: orthographic, fitted to what the camera sees, stable under its movement.
+//!
+//! The square covers the smaller of two things: the sphere around the camera's frustum, cut off behind the scene's bounds, or the
+//! scene itself as the light sees it. The sphere's radius is rounded up to a quarter of an octave, and the square's middle
+//! to whole texels, so that a moving camera shifts the map by whole texels and shadow edges stand still; only where the
+//! rounded radius steps does the map change its scale. Depth covers the whole scene along the light, so every caster is in it.
+//! Accepted downside: a sphere wastes a good part of the map, and one map has no cascades.
+
+use glam::{DMat4, DVec3, DVec4};
+
+use super::layout::ViewTable;
+use super::projection::{CameraView, columns, vector};
+use crate::world::{Aabb, look_at};
+
+/// A fitted view.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct SunView {
+    pub(super) table: ViewTable,
+    /// Metres along a texel (the larger one, should the map not be square).
+    pub(super) texel_size: f64,
+    /// Metres from depth 0 to depth 1.
+    pub(super) depth_range: f64,
+}
+
+/// Fits a map of so many texels. `to_light` has unit length.
+pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, texels: [u32; 2]) -> SunView {
+    let (right, up, back) = look_at(-to_light);
+    let scene = LightBounds::of(bounds, right, up, back);
+    let (mut middle, mut half) = (scene.middle, scene.half);
+    if let Some((center, radius)) = bounds.and_then(|bounds| frustum_sphere(camera, bounds)) {
+        let radius = round_radius(radius);
+        if radius < half {
+            (middle, half) = ([center.dot(right), center.dot(up)], radius);
+        }
+    }
+    // Two texels more than the content, since rounding moves the middle by up to half of one.
+    let texels = texels.map(|count| f64::from(count.max(4)));
+    let size = texels.map(|count| 2.0 * half / (count - 2.0));
+    let half = [0, 1].map(|axis| size[axis] * texels[axis] * 0.5);
+    let middle = [0, 1].map(|axis| (middle[axis] / size[axis]).round() * size[axis]);
+
+    let range = scene.nearest - scene.farthest;
+    let projection_from_world = DMat4::from_cols(
+        (right / half[0]).extend(-middle[0] / half[0]),
+        (up / half[1]).extend(-middle[1] / half[1]),
+        (-back / range).extend(scene.nearest / range),
+        DVec4::W,
+    )
+    .transpose();
+    let table = ViewTable {
+        projection_from_world: columns(projection_from_world),
+        position: vector(right * middle[0] + up * middle[1] + back * scene.nearest),
+        near: 0.0,
+        forward: vector(-back),
+        far: range as f32,
+    };
+    SunView { table, texel_size: size[0].max(size[1]), depth_range: range }
+}
+
+/// The scene as the light sees it.
+struct LightBounds {
+    middle: [f64; 2],
+    /// Of the square that holds it.
+    half: f64,
+    /// Distance along the direction to the light of the plane with depth 0, and of the one with depth 1.
+    nearest: f64,
+    farthest: f64,
+}
+
+impl LightBounds {
+    fn of(bounds: Option<Aabb>, right: DVec3, up: DVec3, back: DVec3) -> LightBounds {
+        let corners = bounds.map_or([DVec3::ZERO; 8], |bounds| bounds.corners().map(|corner| corner.as_dvec3()));
+        let extent = |axis: DVec3| {
+            let along = corners.map(|corner| corner.dot(axis));
+            (along.iter().copied().fold(f64::INFINITY, f64::min), along.iter().copied().fold(f64::NEG_INFINITY, f64::max))
+        };
+        let [x, y, z] = [right, up, back].map(extent);
+        // Room for rounding, and something to divide by in a flat or empty scene.
+        let margin = 1e-3 * (z.1 - z.0) + 1e-2;
+        let half = (0.5 * (x.1 - x.0).max(y.1 - y.0) * 1.001).max(1e-3);
+        LightBounds { middle: [0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1)], half, nearest: z.1 + margin, farthest: z.0 - margin }
+    }
+}
+
+/// The smallest sphere around the frustum between its near plane and the farthest corner of the bounds; `None` if the scene
+/// lies behind the camera.
+fn frustum_sphere(camera: &CameraView, bounds: Aabb) -> Option<(DVec3, f64)> {
+    let forward = camera.forward();
+    let depth = |corner: glam::Vec3| (corner.as_dvec3() - camera.pose.position).dot(forward);
+    let near = camera.near;
+    let far = bounds.corners().into_iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
+    let far = camera.far().map_or(far, |limit| limit.min(far));
+    if far <= near {
+        return None;
+    }
+    let diagonal = camera.half[0].hypot(camera.half[1]);
+    let (along, radius) = match camera.far() {
+        // Equally far from the corners of both ends, unless the far end alone decides.
+        None => {
+            let squared = diagonal * diagonal;
+            let along = (0.5 * (near + far) * (1.0 + squared)).min(far);
+            (along, (far - along).hypot(far * diagonal))
+        }
+        Some(_) => (0.5 * (near + far), diagonal.hypot(0.5 * (far - near))),
+    };
+    Some((camera.pose.position + forward * along, radius))
+}
+
+/// Up to the next quarter of an octave.
+fn round_radius(radius: f64) -> f64 {
+    ((radius.max(1e-6).log2() * 4.0).ceil() / 4.0).exp2()
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Mat4, Vec3};
+    use proptest::prelude::*;
+
+    use super::*;
+    use crate::asset::Projection;
+    use crate::world::CameraPose;
+
+    fn camera(position: DVec3, forward: DVec3) -> CameraView {
+        let (right, up, back) = look_at(forward);
+        let projection = Projection::Perspective { yfov: 0.9, near: 0.1, far: None };
+        CameraView::new(CameraPose { position, right, up, back, projection, ev100: None }, 1.5)
+    }
+
+    fn large() -> Aabb {
+        Aabb { min: Vec3::new(-200.0, 0.0, -200.0), max: Vec3::new(200.0, 30.0, 200.0) }
+    }
+
+    /// Looking at a wall 12 m away, in a scene far larger to the sides.
+    fn corridor() -> Aabb {
+        Aabb { min: Vec3::new(-200.0, 0.0, -12.0), max: Vec3::new(200.0, 30.0, 200.0) }
+    }
+
+    fn texel(view: &SunView, point: Vec3, texels: f32) -> [f32; 2] {
+        let ndc = Mat4::from_cols_array_2d(&view.table.projection_from_world).project_point3(point);
+        [(ndc.x * 0.5 + 0.5) * texels, (0.5 - ndc.y * 0.5) * texels]
+    }
+
+    #[test]
+    fn a_moving_camera_shifts_the_map_by_whole_texels() {
+        let to_light = DVec3::new(0.3, 0.8, 0.4).normalize();
+        let point = Vec3::new(1.0, 2.0, -3.0);
+        let view = |x: f64| fit(to_light, &camera(DVec3::new(x, 2.0, 0.0), DVec3::NEG_Z), Some(corridor()), [1024, 1024]);
+        let first = view(0.0);
+        assert!(first.texel_size < 0.05, "the frustum decides, not the scene: {}", first.texel_size);
+        let start = texel(&first, point, 1024.0);
+        let mut moved = false;
+        for step in 1..50 {
+            let next = view(f64::from(step) * 0.0173);
+            assert_eq!(next.texel_size, first.texel_size);
+            let now = texel(&next, point, 1024.0);
+            for axis in 0..2 {
+                let shift = now[axis] - start[axis];
+                assert!((shift - shift.round()).abs() < 0.01, "a shift of {shift} texels");
+                moved |= shift.abs() > 0.5;
+            }
+        }
+        assert!(moved);
+    }
+
+    proptest! {
+        #[test]
+        fn everything_seen_is_in_the_map(
+            x in -50.0..50.0, y in 0.5..20.0, z in -50.0..50.0, fx in -1.0..1.0, fy in -0.9..0.9, fz in -1.0..1.0,
+            lx in -1.0..1.0, ly in 0.1..1.0, lz in -1.0..1.0, near_or_far in 0.0..1.0_f64, u in -1.0..1.0_f64, v in -1.0..1.0_f64,
+        ) {
+            let forward = DVec3::new(fx, fy, fz).try_normalize().unwrap_or(DVec3::X);
+            let camera = camera(DVec3::new(x, y, z), forward);
+            let view = fit(DVec3::new(lx, ly, lz).normalize(), &camera, Some(large()), [512, 512]);
+            let distance: f64 = 0.1 + near_or_far * 300.0;
+            let ray = forward + camera.pose.right * (u * camera.half[0]) + camera.pose.up * (v * camera.half[1]);
+            let point = (camera.pose.position + ray * distance).as_vec3();
+            let inside = point.cmpge(large().min).all() && point.cmple(large().max).all();
+            if inside {
+                let ndc = Mat4::from_cols_array_2d(&view.table.projection_from_world).project_point3(point);
+                prop_assert!(ndc.x.abs() <= 1.0 && ndc.y.abs() <= 1.0 && (0.0..=1.0).contains(&ndc.z), "{point} is at {ndc}");
+            }
+        }
+    }
+
+    #[test]
+    fn every_caster_has_a_depth_and_the_one_nearer_to_the_light_a_smaller_one() {
+        let view = fit(DVec3::Y, &camera(DVec3::new(0.0, 1.0, 0.0), DVec3::NEG_Z), Some(corridor()), [256, 256]);
+        let matrix = Mat4::from_cols_array_2d(&view.table.projection_from_world);
+        for corner in corridor().corners() {
+            let depth = matrix.project_point3(corner).z;
+            assert!((0.0..=1.0).contains(&depth));
+            assert_eq!(depth < 0.5, corner.y > 15.0);
+        }
+        assert!((view.depth_range - 30.0).abs() < 0.1);
+    }
+
+    #[test]
+    fn nothing_gives_no_nan() {
+        let point = Aabb { min: Vec3::ONE, max: Vec3::ONE };
+        for bounds in [None, Some(point)] {
+            let view = fit(DVec3::Y, &camera(DVec3::ZERO, DVec3::NEG_Z), bounds, [0, 1]);
+            assert!(Mat4::from_cols_array_2d(&view.table.projection_from_world).is_finite());
+            assert!(view.texel_size > 0.0 && view.depth_range > 0.0);
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Axis-aligned bounds of what stands in the world.
+
+use bevy_ecs::prelude::{Component, Entity, World};
+use glam::{Affine3A, Vec3};
+
+use super::{GlobalTransform, MeshInstance, Meshes};
+
+/// A finite axis-aligned box, world space, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Aabb {
+    /// Smallest coordinates.
+    pub min: Vec3,
+    /// Largest coordinates.
+    pub max: Vec3,
+}
+
+impl Aabb {
+    /// The bounds of all finite points; `None` if there are none.
+    pub fn of(points: impl IntoIterator<Item = Vec3>) -> Option<Aabb> {
+        points.into_iter().filter(|point| point.is_finite()).fold(None, |bounds, point| {
+            let bounds = bounds.unwrap_or(Aabb { min: point, max: point });
+            Some(Aabb { min: bounds.min.min(point), max: bounds.max.max(point) })
+        })
+    }
+
+    /// The bounds of both.
+    pub fn union(self, other: Aabb) -> Aabb {
+        Aabb { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The middle.
+    pub fn center(self) -> Vec3 {
+        // Halved before the sum, which could overflow.
+        self.min * 0.5 + self.max * 0.5
+    }
+
+    /// Radius of the sphere around all corners, metres; finite.
+    pub fn radius(self) -> f32 {
+        let half = (self.max.as_dvec3() - self.min.as_dvec3()) * 0.5;
+        (half.length() as f32).min(f32::MAX)
+    }
+
+    /// The eight corners.
+    pub fn corners(self) -> [Vec3; 8] {
+        std::array::from_fn(|corner| {
+            let pick = |axis: usize| if corner >> axis & 1 == 0 { self.min[axis] } else { self.max[axis] };
+            Vec3::new(pick(0), pick(1), pick(2))
+        })
+    }
+}
+
+/// The bounds of a [`MeshInstance`], with what they were computed from; `None` if no vertex is finite.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+pub struct WorldBounds {
+    /// World space.
+    pub bounds: Option<Aabb>,
+    instance: MeshInstance,
+    transform: Affine3A,
+}
+
+/// Writes the [`WorldBounds`] of every mesh instance that moved or changed its mesh since. Exact: every vertex counts, for a
+/// transformed box would be loose. Needs propagated transforms.
+pub fn update_bounds(world: &mut World) {
+    let mut fresh = Vec::new();
+    let mut query = world.query::<(Entity, &MeshInstance, &GlobalTransform, Option<&WorldBounds>)>();
+    let Some(meshes) = world.get_resource::<Meshes>() else { return };
+    for (entity, instance, transform, known) in query.iter(world) {
+        if known.is_some_and(|known| known.instance == *instance && known.transform == transform.0) {
+            continue;
+        }
+        let vertices = meshes.0.get(instance.mesh).map_or(&[][..], |mesh| &mesh.vertices);
+        let bounds = Aabb::of(vertices.iter().map(|vertex| transform.0.transform_point3(Vec3::from(vertex.position))));
+        fresh.push((entity, WorldBounds { bounds, instance: *instance, transform: transform.0 }));
+    }
+    for (entity, bounds) in fresh {
+        world.entity_mut(entity).insert(bounds);
+    }
+}
+
+/// The bounds of all mesh instances, as of the last [`update_bounds`]; `None` if there is nothing.
+pub fn scene_bounds(world: &mut World) -> Option<Aabb> {
+    world.query::<&WorldBounds>().iter(world).filter_map(|known| known.bounds).reduce(Aabb::union)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn points_that_are_not_finite_are_left_out() {
+        let points = [Vec3::new(f32::NAN, 0.0, 0.0), Vec3::ONE, Vec3::new(-1.0, 2.0, 0.5), Vec3::splat(f32::INFINITY)];
+        assert_eq!(Aabb::of(points), Some(Aabb { min: Vec3::new(-1.0, 1.0, 0.5), max: Vec3::new(1.0, 2.0, 1.0) }));
+        assert_eq!(Aabb::of([Vec3::NAN]), None);
+    }
+
+    #[test]
+    fn huge_bounds_stay_finite() {
+        let bounds = Aabb { min: Vec3::splat(f32::MIN), max: Vec3::splat(f32::MAX) };
+        assert!(bounds.center().is_finite() && bounds.radius().is_finite());
+    }
+}

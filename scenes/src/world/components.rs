@@ -1,0 +1,86 @@
+//! What entities carry. Hierarchy and names are `bevy_ecs`'s own ([`super::ChildOf`], [`super::Children`], [`super::Name`]).
+
+use bevy_ecs::prelude::Component;
+use glam::{Affine3A, Vec3};
+
+use crate::asset::Projection;
+
+/// To the space of the parent entity, or of the world where there is none. May be singular.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
+#[require(GlobalTransform)]
+pub struct Transform(pub Affine3A);
+
+/// To world space; written by [`super::propagate_transforms`]. Not finite where a product overflowed: such entities publish nothing.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
+pub struct GlobalTransform(pub Affine3A);
+
+/// A mesh that is drawn with a material.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq)]
+#[require(Transform)]
+pub struct MeshInstance {
+    /// Index into [`super::Meshes`].
+    pub mesh: usize,
+    /// Index into [`super::Materials`].
+    pub material: usize,
+}
+
+/// Light from infinitely far away along the entity's -Z.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct DirectionalLight {
+    /// Linear Rec.709.
+    pub color: Vec3,
+    /// Lux, not negative.
+    pub illuminance: f32,
+}
+
+/// Light from a point, everywhere or in a cone along the entity's -Z.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct LocalLight {
+    /// Linear Rec.709.
+    pub color: Vec3,
+    /// Candela, not negative.
+    pub intensity: f32,
+    /// Metres; `None` is inverse square without end.
+    pub range: Option<f32>,
+    /// `None` for a point light.
+    pub cone: Option<Cone>,
+}
+
+/// The cone of a spot light: half angles in radians, `inner` smaller than `outer`.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Cone {
+    /// Where full strength ends.
+    pub inner: f32,
+    /// Where light ends.
+    pub outer: f32,
+}
+
+/// A camera, looking along the entity's -Z. Scale of its transform is ignored.
+#[derive(Component, Debug, Clone, PartialEq)]
+#[require(Transform)]
+pub struct Camera {
+    /// For `--camera NAME`; the entity's name works as well.
+    pub name: String,
+    /// The vertical extent counts; the horizontal one follows the image.
+    pub projection: Projection,
+    /// Exposure value at ISO 100; `None` leaves radiance as it is.
+    pub ev100: Option<f32>,
+}
+
+/// Row of a [`MeshInstance`] in the table `instances`.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct ObjectSlot(pub u32);
+
+/// Row of a [`DirectionalLight`] in the table `directional_lights`.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct DirectionalSlot(pub u32);
+
+/// Row of a [`LocalLight`] in the table `local_lights`.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct LocalSlot(pub u32);
+
+/// Order of a [`Camera`] among cameras: the lowest is the default one.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub struct CameraSlot(pub u32);

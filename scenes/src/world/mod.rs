@@ -1,0 +1,29 @@
+//! The world: components and resources of a scene, and small systems over them.
+//!
+//! Guarantees: slots (the rows of published tables) never change while their entity lives; degenerate transforms give no NaN
+//! in bounds or cameras, since whatever is not finite is left out. Accepted downside: systems walk the whole world each time;
+//! only bounds, which touch every vertex, are kept between calls.
+
+mod bounds;
+mod camera;
+mod components;
+mod edit;
+mod resources;
+mod slots;
+mod spawn;
+mod transform;
+
+pub use bevy_ecs::hierarchy::{ChildOf, Children};
+pub use bevy_ecs::name::Name;
+pub use bevy_ecs::world::World;
+pub use bounds::{Aabb, WorldBounds, scene_bounds, update_bounds};
+pub use camera::{CameraPose, camera_pose, framing_camera, look_at, rigid_axes, select_camera};
+pub use components::{
+    Camera, CameraSlot, Cone, DirectionalLight, DirectionalSlot, GlobalTransform, LocalLight, LocalSlot, MeshInstance, ObjectSlot,
+    Transform,
+};
+pub use edit::{find_by_name, set_translation};
+pub use resources::{Environment, Images, Materials, Meshes, new_world};
+pub use slots::assign_slots;
+pub use spawn::{StoredAsset, spawn_asset, spawn_stored, store_asset};
+pub use transform::propagate_transforms;

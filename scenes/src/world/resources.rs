@@ -1,0 +1,37 @@
+//! What entities share: meshes, materials, images and the environment.
+//!
+//! The lists only grow, so that an index stays valid, and a material's index is its row in the published table.
+
+use bevy_ecs::prelude::{Resource, World};
+use glam::Vec3;
+
+use crate::asset::{Image, Material, Mesh};
+
+/// Every mesh, by [`super::MeshInstance::mesh`].
+#[derive(Resource, Debug, Default)]
+pub struct Meshes(pub Vec<Mesh>);
+
+/// Every material, by [`super::MeshInstance::material`].
+#[derive(Resource, Debug, Default)]
+pub struct Materials(pub Vec<Material>);
+
+/// Every decoded image, by the `image` of a material's texture uses.
+#[derive(Resource, Debug, Default)]
+pub struct Images(pub Vec<Image>);
+
+/// What surrounds the scene.
+#[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
+pub struct Environment {
+    /// Radiance from every direction where nothing stands, nits, linear Rec.709.
+    pub sky_radiance: Vec3,
+}
+
+/// A world with nothing in it.
+pub fn new_world() -> World {
+    let mut world = World::new();
+    world.init_resource::<Meshes>();
+    world.init_resource::<Materials>();
+    world.init_resource::<Images>();
+    world.init_resource::<Environment>();
+    world
+}

@@ -1,0 +1,98 @@
+//! From an asset to entities.
+
+use bevy_ecs::prelude::{Entity, World};
+use glam::{Affine3A, Vec3};
+
+use super::{Camera, ChildOf, Cone, DirectionalLight, Images, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, assign_slots};
+use crate::asset::{Asset, Light, LightKind, Material, Node, TextureUse};
+
+/// An asset whose meshes, materials and images are in a world, ready to be spawned any number of times.
+#[derive(Debug, Clone)]
+pub struct StoredAsset {
+    nodes: Vec<Node>,
+    lights: Vec<Light>,
+    cameras: Vec<crate::asset::Camera>,
+    first_mesh: usize,
+    /// Per mesh of the asset, its material in the world.
+    mesh_materials: Vec<usize>,
+}
+
+/// Moves an asset's meshes, materials and images into the world and returns the rest.
+pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
+    let first_image = append(&mut world.get_resource_or_init::<Images>().0, asset.images);
+    let materials = asset.materials.into_iter().map(|material| shift_images(material, first_image)).collect();
+    let first_material = append(&mut world.get_resource_or_init::<Materials>().0, materials);
+    let mut meshes = asset.meshes;
+    for mesh in &mut meshes {
+        mesh.material += first_material;
+    }
+    let mesh_materials = meshes.iter().map(|mesh| mesh.material).collect();
+    let first_mesh = append(&mut world.get_resource_or_init::<Meshes>().0, meshes);
+    StoredAsset { nodes: asset.nodes, lights: asset.lights, cameras: asset.cameras, first_mesh, mesh_materials }
+}
+
+/// Spawns a copy of the asset's nodes below `parent` (or at the root) and returns an entity per node, in the asset's order.
+/// Meshes become children of their node, one each, without a name; lights and cameras stand on the node itself.
+pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entity>) -> Vec<Entity> {
+    let mut entities: Vec<Entity> = Vec::with_capacity(asset.nodes.len());
+    for node in &asset.nodes {
+        let mut entity = world.spawn((Name::new(node.name.clone()), Transform(node.local)));
+        if let Some(above) = node.parent.and_then(|index| entities.get(index).copied()).or(parent) {
+            entity.insert(ChildOf(above));
+        }
+        match node.light.and_then(|index| asset.lights.get(index)) {
+            Some(Light { kind: LightKind::Directional, color, intensity, .. }) => {
+                entity.insert(DirectionalLight { color: Vec3::from(*color), illuminance: *intensity });
+            }
+            Some(Light { kind, color, intensity, range, .. }) => {
+                let cone = match kind {
+                    LightKind::Spot { inner, outer } => Some(Cone { inner: *inner, outer: *outer }),
+                    LightKind::Point | LightKind::Directional => None,
+                };
+                entity.insert(LocalLight { color: Vec3::from(*color), intensity: *intensity, range: *range, cone });
+            }
+            None => {}
+        }
+        if let Some(camera) = node.camera.and_then(|index| asset.cameras.get(index)) {
+            entity.insert(Camera { name: camera.name.clone(), projection: camera.projection, ev100: None });
+        }
+        let entity = entity.id();
+        for mesh in &node.meshes {
+            if let Some(material) = asset.mesh_materials.get(*mesh) {
+                let instance = MeshInstance { mesh: asset.first_mesh + mesh, material: *material };
+                world.spawn((Transform(Affine3A::IDENTITY), instance, ChildOf(entity)));
+            }
+        }
+        entities.push(entity);
+    }
+    assign_slots(world);
+    entities
+}
+
+/// Stores an asset and spawns it once, below an own root with the transform `parent` unless that is the identity.
+pub fn spawn_asset(world: &mut World, asset: &Asset, parent: Affine3A) -> Vec<Entity> {
+    let stored = store_asset(world, asset.clone());
+    let root = (parent != Affine3A::IDENTITY).then(|| world.spawn(Transform(parent)).id());
+    spawn_stored(world, &stored, root)
+}
+
+/// Appends and returns the index of the first new element.
+fn append<T>(list: &mut Vec<T>, mut new: Vec<T>) -> usize {
+    let first = list.len();
+    list.append(&mut new);
+    first
+}
+
+fn shift_images(material: Material, first_image: usize) -> Material {
+    let shift = |texture: Option<TextureUse>| texture.map(|texture| TextureUse { image: texture.image + first_image, ..texture });
+    Material {
+        base_color_texture: shift(material.base_color_texture),
+        metallic_roughness_texture: shift(material.metallic_roughness_texture),
+        normal_texture: shift(material.normal_texture),
+        occlusion_texture: shift(material.occlusion_texture),
+        emissive_texture: shift(material.emissive_texture),
+        specular_texture: shift(material.specular_texture),
+        specular_color_texture: shift(material.specular_color_texture),
+        ..material
+    }
+}

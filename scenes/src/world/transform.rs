@@ -1,0 +1,48 @@
+//! From local transforms to world space.
+
+use bevy_ecs::prelude::{Entity, Without, World};
+use glam::Affine3A;
+
+use super::{ChildOf, Children, GlobalTransform, Transform};
+
+/// Writes every [`GlobalTransform`] that differs from the product of the transforms above it. Entities without a
+/// [`Transform`] in between count as the identity.
+pub fn propagate_transforms(world: &mut World) {
+    let mut stack: Vec<(Entity, Affine3A)> =
+        world.query_filtered::<Entity, Without<ChildOf>>().iter(world).map(|root| (root, Affine3A::IDENTITY)).collect();
+    while let Some((entity, parent)) = stack.pop() {
+        let local = world.get::<Transform>(entity).map(|transform| transform.0);
+        let global = local.map_or(parent, |local| parent * local);
+        if local.is_some()
+            && let Some(mut stored) = world.get_mut::<GlobalTransform>(entity)
+            && stored.0 != global
+        {
+            stored.0 = global;
+        }
+        if let Some(children) = world.get::<Children>(entity) {
+            stack.extend(children.iter().copied().map(|child| (child, global)));
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use glam::{Quat, Vec3};
+
+    use super::*;
+    use crate::world::new_world;
+
+    #[test]
+    fn products_go_down_the_hierarchy() {
+        let mut world = new_world();
+        let parent = Affine3A::from_scale_rotation_translation(Vec3::new(2.0, -1.0, 1.0), Quat::from_rotation_y(1.0), Vec3::X);
+        let child = Affine3A::from_translation(Vec3::new(0.0, 3.0, 0.0));
+        let root = world.spawn(Transform(parent)).id();
+        let middle = world.spawn(ChildOf(root)).id();
+        let leaf = world.spawn((Transform(child), ChildOf(middle))).id();
+        propagate_transforms(&mut world);
+        assert_eq!(world.get::<GlobalTransform>(root).unwrap().0, parent);
+        assert_eq!(world.get::<GlobalTransform>(leaf).unwrap().0, parent * child);
+        assert!(world.get::<GlobalTransform>(leaf).unwrap().0.matrix3.determinant() < 0.0);
+    }
+}

@@ -1,0 +1,18 @@
+// What the camera sees, with everything that shading needs to know. Layout: shared/gbuffer.wgsl.
+
+#import "shared/forward_surface.wgsl"
+#import "shared/gbuffer.wgsl"
+
+@vertex
+fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
+    return transform_mesh_vertex(vertex, instance_index);
+}
+
+@fragment
+fn store(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> GbufferTexel {
+    let drawn = drawn_surface(fragment, front_facing);
+    if is_cut_out(fragment.material, drawn.alpha) {
+        discard;
+    }
+    return encode_gbuffer(drawn.point);
+}

@@ -1,0 +1,20 @@
+// Emission, direct light, and the sky where nothing stands, per texel of the G-buffer.
+
+#import "shared/direct_light.wgsl"
+#import "shared/gbuffer_textures.wgsl"
+
+struct Targets {
+    // Radiance / light_unit.
+    light: vec4<f32>,
+}
+
+@fragment
+fn shade(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> Targets {
+    let texel = vec2<i32>(place.xy);
+    let stored_depth = textureLoad(depth, texel, 0);
+    if stored_depth == NOTHING_THERE {
+        return Targets(vec4<f32>(fit_half(environment.sky_radiance * environment.inverse_light_unit), 1.0));
+    }
+    let point = load_gbuffer(texel, uv, stored_depth);
+    return Targets(vec4<f32>(fit_half(emitted_and_direct_light(point)), 1.0));
+}

@@ -1,0 +1,20 @@
+// Surfaces that blend, shaded as they are drawn: emission and direct light, over what stands behind.
+
+#import "shared/direct_light.wgsl"
+#import "shared/forward_surface.wgsl"
+
+struct Targets {
+    // Radiance / light_unit, and how much of what is behind is covered.
+    light: vec4<f32>,
+}
+
+@vertex
+fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
+    return transform_mesh_vertex(vertex, instance_index);
+}
+
+@fragment
+fn shade(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> Targets {
+    let drawn = drawn_surface(fragment, front_facing);
+    return Targets(vec4<f32>(fit_half(emitted_and_direct_light(drawn.point)), saturate(drawn.alpha)));
+}

@@ -1,0 +1,16 @@
+// What holds for the whole scene: the published table `environment`.
+
+struct Environment {
+    // Radiance of the sky in every direction, nits.
+    sky_radiance: vec3<f32>,
+    // Light is accumulated as radiance / light_unit, so that 100,000 lx and half floats go together. A power of two: dividing
+    // and multiplying by it loses nothing.
+    light_unit: f32,
+    inverse_light_unit: f32,
+    // Entries in use of `directional_lights`.
+    directional_count: u32,
+    // Entries in use of `local_lights`.
+    local_count: u32,
+}
+
+var<uniform> environment: Environment;

@@ -1,0 +1,123 @@
+//! The command line's arguments and help.
+
+use std::path::PathBuf;
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+
+/// Real-time global illumination from render graphs written in RON.
+#[derive(Debug, Parser)]
+#[command(
+    name = "luminaire",
+    version,
+    max_term_width = 100,
+    after_help = "\
+Examples:
+  luminaire render pipelines/pbr.ron --scene scenes/cornell.ron -o cornell.png
+  luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set tone_mapping=aces
+  luminaire check pipelines/*.ron
+  luminaire plan pipelines/pbr.ron --format dot | dot -Tsvg -o plan.svg
+
+Pipelines, shaders and scenes that come with the program can be named by the same paths from anywhere; a file on disk wins.
+Exit status: 0 done, 1 something was wrong with the input or the machine (said on standard error), 2 wrong usage."
+)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Render a scene into an image, without a window
+    Render(RenderArguments),
+    /// Report every problem of pipelines, shaders and scenes, with its place
+    Check(CheckArguments),
+    /// Show what a pipeline compiles to: passes in order, resources, memory
+    Plan(PlanArguments),
+    /// Show the adapter, its limits, and what comes with the program
+    Info,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct RenderArguments {
+    /// The pipeline: a .ron file
+    pub pipeline: String,
+    /// The scene: a .gltf, .glb or scene .ron file
+    #[arg(long)]
+    pub scene: String,
+    /// The folder that the scene's files may come from; the scene file's own if not given
+    #[arg(long, value_name = "DIR")]
+    pub asset_root: Option<PathBuf>,
+    /// The image to write: .png holds the output `color`, .exr the output `radiance`
+    #[arg(short = 'o', value_name = "FILE")]
+    pub file: PathBuf,
+    /// Width and height in pixels
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = parse_size)]
+    pub size: [u32; 2],
+    /// The camera to look through, by name; the file's first, or one that frames the scene, if not given
+    #[arg(long, value_name = "NAME")]
+    pub camera: Option<String>,
+    /// Set a parameter of the pipeline; may be given several times
+    #[arg(long = "set", value_name = "P=V", value_parser = parse_set)]
+    pub sets: Vec<(String, String)>,
+    /// The pipeline's output to write, instead of `color` or `radiance`
+    #[arg(long, value_name = "NAME")]
+    pub output: Option<String>,
+    /// How many frames to render before the image is taken
+    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: u32,
+    /// Write times per pass, memory figures and counts as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    /// Refuse plans that allocate more than this
+    #[arg(long, value_name = "MIB", default_value_t = 4096)]
+    pub memory_budget: u64,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct CheckArguments {
+    /// Pipelines and scenes (.ron), shaders (.wgsl), models (.gltf, .glb)
+    #[arg(required = true)]
+    pub paths: Vec<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct PlanArguments {
+    /// The pipeline: a .ron file
+    pub pipeline: String,
+    /// How to show the plan
+    #[arg(long, value_enum, default_value_t = PlanFormat::Text)]
+    pub format: PlanFormat,
+    /// Width and height in pixels
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = parse_size)]
+    pub size: [u32; 2],
+    /// The scene whose lights and materials decide what stands; one of everything if not given
+    #[arg(long)]
+    pub scene: Option<String>,
+    /// Set a parameter of the pipeline; may be given several times
+    #[arg(long = "set", value_name = "P=V", value_parser = parse_set)]
+    pub sets: Vec<(String, String)>,
+    /// Plan for these outputs alone; all if not given
+    #[arg(long, value_name = "NAME")]
+    pub output: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum PlanFormat {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+    /// Graphviz
+    Dot,
+}
+
+fn parse_size(text: &str) -> Result<[u32; 2], String> {
+    let (width, height) = text.split_once(['x', 'X']).ok_or("expected WIDTHxHEIGHT, such as 1280x720")?;
+    let axis = |text: &str| text.parse::<u32>().map_err(|_| format!("`{text}` is not a whole number of pixels"));
+    Ok([axis(width)?, axis(height)?])
+}
+
+fn parse_set(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("expected PARAMETER=VALUE")?;
+    Ok((name.trim().to_owned(), value.trim().to_owned()))
+}

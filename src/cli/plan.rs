@@ -1,0 +1,56 @@
+//! `luminaire plan`: what a pipeline compiles to, without a GPU.
+
+use std::path::Path;
+
+use luminaire_graph::compile::{CompileInput, compile};
+use luminaire_graph::device::DeviceFacts;
+use luminaire_graph::dump;
+use luminaire_graph::published::SceneCounts;
+use luminaire_graph::source::SourceMap;
+
+use super::arguments::{PlanArguments, PlanFormat};
+use super::{print, report};
+use crate::files::DiskFiles;
+use crate::session::{LoadedScene, load_scene};
+
+pub(super) fn run(arguments: &PlanArguments) -> bool {
+    let published = luminaire_scenes::publish::schema();
+    let counts = match &arguments.scene {
+        None => one_of_everything(),
+        Some(path) => match load_scene(path, None) {
+            Ok(LoadedScene { mut world, diagnostics, sources }) => {
+                report(&diagnostics, &sources);
+                luminaire_scenes::publish::counts(&mut world)
+            }
+            Err((diagnostics, sources)) => return report(&diagnostics, &sources),
+        },
+    };
+    let compilation = compile(&CompileInput {
+        pipeline: &arguments.pipeline,
+        files: &DiskFiles::for_pipeline(Path::new(&arguments.pipeline)),
+        published: &published,
+        counts: &counts,
+        device: &DeviceFacts::webgpu_defaults(),
+        output: arguments.size,
+        sets: &arguments.sets,
+        outputs: (!arguments.output.is_empty()).then_some(&arguments.output),
+    });
+    let fine = report(&compilation.diagnostics, &compilation.sources);
+    match compilation.plan {
+        None => false,
+        Some(plan) => {
+            let sources: &SourceMap = &compilation.sources;
+            let text = match arguments.format {
+                PlanFormat::Text => dump::text(&plan, sources),
+                PlanFormat::Json => dump::json(&plan, sources),
+                PlanFormat::Dot => dump::dot(&plan),
+            };
+            print(&text) && fine
+        }
+    }
+}
+
+/// Counts under which every `has` stands, for plans without a scene.
+pub(super) fn one_of_everything() -> SceneCounts {
+    luminaire_scenes::publish::schema().counts.into_iter().map(|name| (name, 1)).collect()
+}

@@ -1,0 +1,160 @@
+//! Where pipelines, shaders and scenes come from: the disk first, then what is embedded in the program.
+//!
+//! A shader that a pipeline names is looked up in the `shaders` folder beside the pipeline's folder, then beside the pipeline
+//! itself, then in `shaders` of the working directory, then among the embedded ones. Paths in pipelines can't leave these folders.
+
+use std::path::{Component, Path, PathBuf};
+
+use include_dir::{Dir, DirEntry, include_dir};
+use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile};
+
+static PIPELINES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
+static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
+/// Scene files; a test checks that none is missing here.
+static SCENES: &[(&str, &str)] =
+    &[("cornell.ron", include_str!("../scenes/cornell.ron")), ("materials.ron", include_str!("../scenes/materials.ron"))];
+
+/// Texts larger than this are refused.
+const MAX_TEXT_BYTES: u64 = 64 << 20;
+
+/// Files on disk with the embedded ones behind them.
+#[derive(Debug, Clone, Default)]
+pub struct DiskFiles {
+    shader_folders: Vec<PathBuf>,
+}
+
+impl DiskFiles {
+    /// Files for a pipeline: its path decides where its shaders are looked up.
+    pub fn for_pipeline(pipeline: &Path) -> DiskFiles {
+        let mut shader_folders = Vec::new();
+        if pipeline.is_file()
+            && let Some(folder) = pipeline.parent()
+        {
+            shader_folders.push(folder.join("..").join("shaders"));
+            shader_folders.push(folder.to_owned());
+        }
+        shader_folders.push(PathBuf::from("shaders"));
+        DiskFiles { shader_folders }
+    }
+
+    /// Files for a shader by itself: `name` is the end of `path`, and imports are looked up where `path` begins.
+    pub fn for_shader(path: &Path, name: &str) -> DiskFiles {
+        let depth = Path::new(name).components().count();
+        let folder = path.ancestors().nth(depth).map(Path::to_owned).unwrap_or_default();
+        let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
+        DiskFiles { shader_folders: vec![folder] }
+    }
+}
+
+impl Files for DiskFiles {
+    fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError> {
+        match kind {
+            FileKind::Pipeline => read_disk(Path::new(path)).unwrap_or_else(|| read_embedded(&PIPELINES, "pipelines", path, &["."])),
+            FileKind::Shader => {
+                if Path::new(path).components().any(|component| !matches!(component, Component::Normal(_) | Component::CurDir)) {
+                    return Err(FileError::Unreadable("a shader's path stays inside the shaders folder".to_owned()));
+                }
+                let on_disk = self.shader_folders.iter().find_map(|folder| read_disk(&folder.join(path)));
+                let searched: Vec<String> = self.shader_folders.iter().map(|folder| folder.display().to_string()).collect();
+                let searched: Vec<&str> = searched.iter().map(String::as_str).collect();
+                on_disk.unwrap_or_else(|| read_embedded(&SHADERS, "shaders", path, &searched))
+            }
+        }
+    }
+
+    fn known(&self, kind: FileKind) -> Vec<String> {
+        match kind {
+            FileKind::Pipeline => embedded_pipelines(),
+            FileKind::Shader => {
+                let mut known = names(&SHADERS, "wgsl");
+                for folder in &self.shader_folders {
+                    collect(folder, folder, 0, &mut known);
+                }
+                known.sort();
+                known.dedup();
+                known
+            }
+        }
+    }
+}
+
+/// The pipelines in the program.
+pub fn embedded_pipelines() -> Vec<String> {
+    names(&PIPELINES, "ron").into_iter().map(|name| format!("pipelines/{name}")).collect()
+}
+
+/// The scenes in the program.
+pub fn embedded_scenes() -> Vec<String> {
+    SCENES.iter().map(|(name, _)| format!("scenes/{name}")).collect()
+}
+
+/// The text of an embedded scene: `scenes/cornell.ron`, `cornell.ron` or `cornell`.
+pub fn embedded_scene(path: &str) -> Option<LoadedFile> {
+    let inner = path.strip_prefix("./").unwrap_or(path);
+    let inner = inner.strip_prefix("scenes/").unwrap_or(inner);
+    let found = SCENES.iter().find(|(name, _)| *name == inner || name.strip_suffix(".ron") == Some(inner));
+    found.map(|(name, text)| LoadedFile { name: format!("scenes/{name}"), text: (*text).to_owned() })
+}
+
+/// `None` if there is no such file, so that the next place is tried.
+fn read_disk(path: &Path) -> Option<Result<LoadedFile, FileError>> {
+    let metadata = std::fs::metadata(path).ok()?;
+    let unreadable = |reason: String| Some(Err(FileError::Unreadable(reason)));
+    if metadata.is_dir() {
+        return unreadable("it is a folder".to_owned());
+    }
+    if metadata.len() > MAX_TEXT_BYTES {
+        return unreadable(format!("it is larger than {} MiB", MAX_TEXT_BYTES >> 20));
+    }
+    match std::fs::read(path) {
+        Err(error) => unreadable(error.to_string()),
+        Ok(bytes) => match String::from_utf8(bytes) {
+            Ok(text) => Some(Ok(LoadedFile { name: path.display().to_string(), text })),
+            Err(error) => unreadable(format!("it is not UTF-8 at byte {}", error.utf8_error().valid_up_to())),
+        },
+    }
+}
+
+fn read_embedded(dir: &Dir<'_>, folder: &str, path: &str, searched: &[&str]) -> Result<LoadedFile, FileError> {
+    let prefix = format!("{folder}/");
+    let inner = path.strip_prefix("./").unwrap_or(path);
+    let inner = inner.strip_prefix(&prefix).unwrap_or(inner);
+    let file = dir.get_file(inner).or_else(|| dir.get_file(format!("{inner}.ron")));
+    match file.and_then(|file| Some((file.path(), file.contents_utf8()?))) {
+        Some((path, text)) => Ok(LoadedFile { name: format!("{prefix}{}", path.display()), text: text.to_owned() }),
+        None => {
+            let searched = searched.iter().map(|place| (*place).to_owned()).chain(["the files in the program".to_owned()]).collect();
+            Err(FileError::NotFound { searched })
+        }
+    }
+}
+
+fn names(dir: &Dir<'_>, extension: &str) -> Vec<String> {
+    let mut found = Vec::new();
+    for entry in dir.entries() {
+        match entry {
+            DirEntry::Dir(dir) => found.extend(names(dir, extension)),
+            DirEntry::File(file) if file.path().extension().is_some_and(|found| found == extension) => {
+                found.push(file.path().display().to_string());
+            }
+            DirEntry::File(_) => {}
+        }
+    }
+    found.sort();
+    found
+}
+
+/// Shader files below a folder, for hints.
+fn collect(root: &Path, folder: &Path, depth: usize, found: &mut Vec<String>) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten().take(1000) {
+        let path = entry.path();
+        if path.is_dir() && depth < 4 {
+            collect(root, &path, depth + 1, found);
+        } else if path.extension().is_some_and(|extension| extension == "wgsl")
+            && let Ok(inner) = path.strip_prefix(root)
+        {
+            found.push(inner.display().to_string());
+        }
+    }
+}

@@ -1,0 +1,148 @@
+//! One rendering: a scene, a pipeline compiled for it and for an adapter, and the executor that runs it.
+
+use std::path::Path;
+use std::sync::Arc;
+
+use luminaire_graph::compile::{CompileInput, compile};
+use luminaire_graph::diagnostic::{Diagnostic, has_errors};
+use luminaire_graph::plan::Plan;
+use luminaire_graph::source::SourceMap;
+use luminaire_passes::{Adapter, Executor, FrameStats};
+use luminaire_scenes::World;
+use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
+
+use crate::files::{DiskFiles, embedded_scene};
+use crate::image_file::LinearImage;
+
+/// Problems and the texts that they point into.
+pub type Problems = (Vec<Diagnostic>, SourceMap);
+
+/// A scene with its warnings.
+#[derive(Debug)]
+pub struct LoadedScene {
+    /// Entities, meshes, materials, images.
+    pub world: World,
+    /// Warnings.
+    pub diagnostics: Vec<Diagnostic>,
+    /// Texts that the warnings point into.
+    pub sources: SourceMap,
+}
+
+/// Loads a scene by path, or an embedded one by name. `asset_root` is the folder that its files may come from; the scene's own
+/// if not given.
+pub fn load_scene(path: &str, asset_root: Option<&Path>) -> Result<LoadedScene, Problems> {
+    let mut sources = SourceMap::default();
+    let on_disk = Path::new(path);
+    let loaded = match (on_disk.exists(), embedded_scene(path)) {
+        (false, Some(embedded)) => luminaire_scenes::load_scene_text(&embedded.name, &embedded.text, &mut sources),
+        _ => luminaire_scenes::load_scene(on_disk, asset_root, &mut sources),
+    };
+    match loaded {
+        Ok(loaded) => Ok(LoadedScene { world: loaded.world, diagnostics: loaded.warnings, sources }),
+        Err(mut diagnostics) => {
+            let known = crate::files::embedded_scenes();
+            if !on_disk.exists()
+                && let Some(first) = diagnostics.first_mut()
+                && first.hint.is_none()
+            {
+                first.hint = Some(format!("scenes that come with the program: {}", known.join(", ")));
+            }
+            Err((diagnostics, sources))
+        }
+    }
+}
+
+/// Whether a RON file is a scene and not a pipeline: pipelines have passes.
+pub fn is_scene_text(path: &Path) -> bool {
+    std::fs::read_to_string(path).is_ok_and(|text| !text.lines().any(|line| line.trim_start().starts_with("passes:")))
+}
+
+/// What to render.
+#[derive(Debug, Clone)]
+pub struct RenderRequest<'a> {
+    /// The pipeline's path.
+    pub pipeline: &'a str,
+    /// Width and height in pixels.
+    pub size: [u32; 2],
+    /// The camera's name.
+    pub camera: Option<&'a str>,
+    /// Parameters that are set.
+    pub sets: &'a [(String, String)],
+    /// The outputs asked for; `None` asks for all.
+    pub outputs: Option<&'a [String]>,
+    /// Measure the GPU time of each pass.
+    pub timing: bool,
+    /// Bytes that the plan may allocate; `None` leaves it to the adapter.
+    pub memory_budget: Option<u64>,
+}
+
+/// A plan that is ready to render.
+#[derive(Debug)]
+pub struct Session {
+    /// What runs.
+    pub plan: Arc<Plan>,
+    /// The adapter's name.
+    pub adapter: String,
+    /// Warnings of the compilation and the publishing.
+    pub warnings: Problems,
+    executor: Executor,
+}
+
+impl Session {
+    /// Compiles a pipeline for a world and an adapter, publishes the world, and creates everything on the GPU.
+    pub fn new(world: &mut World, request: &RenderRequest<'_>) -> Result<Session, Problems> {
+        let adapter = Adapter::choose(request.memory_budget).map_err(|problems| (problems, SourceMap::default()))?;
+        Session::on(&adapter, world, request)
+    }
+
+    /// The same on an adapter that the caller has chosen.
+    pub fn on(adapter: &Adapter, world: &mut World, request: &RenderRequest<'_>) -> Result<Session, Problems> {
+        let facts = adapter.facts();
+        let published = schema();
+        let counts = counts(world);
+        let compilation = compile(&CompileInput {
+            pipeline: request.pipeline,
+            files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
+            published: &published,
+            counts: &counts,
+            device: &facts,
+            output: request.size,
+            sets: request.sets,
+            outputs: request.outputs,
+        });
+        let (mut diagnostics, sources) = (compilation.diagnostics, compilation.sources);
+        let Some(plan) = compilation.plan else { return Err((diagnostics, sources)) };
+        let plan = Arc::new(plan);
+        let publish_request = PublishRequest {
+            camera: request.camera,
+            extent: request.size,
+            views: &plan.views,
+            draw_lists: &plan.draw_lists,
+            max_texture_2d: facts.max_texture_2d,
+        };
+        let made = publish(world, &publish_request).and_then(|scene| {
+            let gpu = adapter.open(&plan.requirements, request.timing)?;
+            Executor::new(&gpu, Arc::clone(&plan), &published, Arc::new(scene))
+        });
+        match made {
+            Ok(executor) => Ok(Session { plan, adapter: adapter.name(), warnings: (diagnostics, sources), executor }),
+            Err(problems) => {
+                diagnostics.extend(problems);
+                debug_assert!(has_errors(&diagnostics));
+                Err((diagnostics, sources))
+            }
+        }
+    }
+
+    /// Renders a frame.
+    pub fn render_frame(&mut self) -> Result<FrameStats, Problems> {
+        self.executor.render_frame().map_err(|problems| (problems, self.warnings.1.clone()))
+    }
+
+    /// Reads an output as a linear image.
+    pub fn read_output(&self, name: &str) -> Result<LinearImage, Problems> {
+        let image = self.executor.read_output(name).map_err(|problems| (problems, self.warnings.1.clone()))?;
+        let texels = image.pixels.chunks_exact(4).map(|texel| [texel[0], texel[1], texel[2], texel[3]]).collect();
+        Ok(LinearImage { width: image.width, height: image.height, texels, components: image.format.info().components })
+    }
+}

@@ -1,0 +1,55 @@
+//! Every shipped pipeline on wgpu's device that runs nothing, with only the features that it declares: under WebGPU's default
+//! limits, and under those of Mesa's software driver. No driver is needed.
+
+use luminaire::files::{embedded_pipelines, embedded_scenes};
+use luminaire::graph::device::DeviceFacts;
+use luminaire::graph::diagnostic::render;
+use luminaire::passes::Adapter;
+use luminaire::session::{RenderRequest, Session, load_scene};
+
+/// What lavapipe of Mesa 22.3 offers, where it is more or less than WebGPU's defaults.
+fn lavapipe() -> DeviceFacts {
+    DeviceFacts {
+        name: "lavapipe's limits".to_owned(),
+        max_texture_1d: 16384,
+        max_texture_2d: 16384,
+        max_texture_3d: 4096,
+        max_layers: 2048,
+        max_buffer_bytes: 2 << 30,
+        max_storage_binding_bytes: 128 << 20,
+        max_workgroup_invocations: 1024,
+        max_workgroup_size: [1024, 1024, 1024],
+        ..DeviceFacts::webgpu_defaults()
+    }
+}
+
+#[test]
+fn shipped_pipelines_are_valid() {
+    let mut failures = Vec::new();
+    for facts in [DeviceFacts::webgpu_defaults(), lavapipe()] {
+        for pipeline in embedded_pipelines() {
+            for scene in embedded_scenes() {
+                let adapter = Adapter::noop(&facts).expect("the noop adapter needs no driver");
+                let mut loaded = load_scene(&scene, None).expect("shipped scenes load");
+                let request = RenderRequest {
+                    pipeline: &pipeline,
+                    size: [64, 48],
+                    camera: None,
+                    sets: &[],
+                    outputs: None,
+                    timing: false,
+                    memory_budget: None,
+                };
+                let rendered = Session::on(&adapter, &mut loaded.world, &request).and_then(|mut session| {
+                    let problems = session.warnings.clone();
+                    session.render_frame()?;
+                    if problems.0.is_empty() { Ok(()) } else { Err(problems) }
+                });
+                if let Err((problems, sources)) = rendered {
+                    failures.push(format!("{pipeline} with {scene} under {}:\n{}", facts.name, render(&problems, &sources, false)));
+                }
+            }
+        }
+    }
+    assert!(failures.is_empty(), "{}", failures.join("\n"));
+}

@@ -1,0 +1,89 @@
+//! Direct light against path-traced references: rendered at four times the size and box-filtered, since a reference's pixel is the
+//! mean over its area.
+
+#[path = "support/mod.rs"]
+mod support;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+use luminaire::image_file::LinearImage;
+use luminaire::passes::Adapter;
+use luminaire::session::{RenderRequest, Session, load_scene};
+use support::{box_filter, compare, read_exr, shared, trial};
+
+const FACTOR: u32 = 4;
+
+struct Case {
+    scene: &'static str,
+    reference: &'static str,
+    /// Nodes moved before rendering: the scenes' animations are not part of this.
+    moved: &'static [(&'static str, [f32; 3])],
+}
+
+const CASES: &[Case] = &[
+    Case { scene: "cornell/cornell_point.gltf", reference: "cornell/cornell_point.direct.exr", moved: &[] },
+    Case { scene: "cornell/cornell_point_gltfbrdf.gltf", reference: "cornell/cornell_point.direct_gltfbrdf.exr", moved: &[] },
+    Case { scene: "dynamic/dynamic.gltf", reference: "dynamic/dynamic_a.direct.exr", moved: &[("moving_box", [-1.6, 0.6, -1.4])] },
+    Case { scene: "dynamic/dynamic.gltf", reference: "dynamic/dynamic_b.direct.exr", moved: &[("moving_box", [1.7, 0.6, -1.0])] },
+    Case { scene: "leak/leak_door.gltf", reference: "leak/leak_door.direct.exr", moved: &[] },
+    Case { scene: "leak/leak_sealed.gltf", reference: "leak/leak_sealed.direct.exr", moved: &[] },
+];
+
+fn render(case: &Case) -> Result<(LinearImage, LinearImage), Failed> {
+    let folder = shared().ok_or("the reference data is missing")?.join("references");
+    let reference = read_exr(&folder.join(case.reference));
+    let scene = folder.join(case.scene);
+    let mut loaded = load_scene(&scene.display().to_string(), None).map_err(|(problems, _)| format!("{problems:?}"))?;
+    for (node, translation) in case.moved {
+        if !luminaire::scenes::set_translation(&mut loaded.world, node, (*translation).into()) {
+            return Err(format!("no node `{node}`").into());
+        }
+    }
+    let outputs = ["radiance".to_owned()];
+    let request = RenderRequest {
+        pipeline: "pipelines/pbr.ron",
+        size: [reference.width * FACTOR, reference.height * FACTOR],
+        camera: None,
+        sets: &[],
+        outputs: Some(&outputs),
+        timing: false,
+        memory_budget: None,
+    };
+    let shown = |(problems, sources): luminaire::session::Problems| luminaire::graph::diagnostic::render(&problems, &sources, false);
+    let mut session = Session::new(&mut loaded.world, &request).map_err(shown)?;
+    session.render_frame().map_err(shown)?;
+    let image = session.read_output("radiance").map_err(shown)?;
+    Ok((reference, box_filter(&image, FACTOR)))
+}
+
+fn agrees(case: &Case) -> Result<(), Failed> {
+    let (reference, image) = render(case)?;
+    let difference = compare(&reference, &image);
+    println!("{}: {difference:?}", case.reference);
+    if difference.rel_mse > 0.002 || difference.rel_mse_trim1 > 0.0003 || (difference.lum_ratio - 1.0).abs() > 0.005 {
+        return Err(format!("{}: {difference:?}", case.reference).into());
+    }
+    Ok(())
+}
+
+/// A wall two centimetres thick lets nothing through: not little, nothing.
+fn sealed_room_is_black() -> Result<(), Failed> {
+    let (_, image) = render(&CASES[5])?;
+    let lit = (0..image.height).flat_map(|y| (257..image.width).map(move |x| (x, y))).filter(|(x, y)| {
+        let texel = image.texels[(y * image.width + x) as usize];
+        texel[..3].iter().any(|channel| *channel != 0.0)
+    });
+    let lit: Vec<_> = lit.take(10).collect();
+    if lit.is_empty() { Ok(()) } else { Err(format!("light behind the wall at {lit:?}").into()) }
+}
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let missing = match (Adapter::choose(None).is_ok(), shared().is_some()) {
+        (false, _) => Some("a Vulkan adapter"),
+        (true, false) => Some("the reference data"),
+        (true, true) => None,
+    };
+    let mut trials: Vec<Trial> = CASES.iter().map(|case| trial(case.reference, missing, || agrees(case))).collect();
+    trials.push(trial("leak_sealed is black behind the wall", missing, sealed_room_is_black));
+    libtest_mimic::run(&arguments, trials).exit();
+}
