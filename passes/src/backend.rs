@@ -103,7 +103,7 @@ impl Backend for WgpuBackend {
             }
             encode(&prepared.kind, &mut encoder, store, None, &mut counts);
             drop(encoder.finish());
-            Ok(prepared)
+            Ok::<PreparedStep, Diagnostic>(prepared)
         });
         subject.check(&errors)?;
         let prepared = prepared?;

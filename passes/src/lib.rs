@@ -5,8 +5,7 @@
 //!
 //! Every error of wgpu comes back as a diagnostic; none panics.
 
-// A diagnostic is large and rare; a box around each would burden every signature for nothing.
-#![allow(clippy::result_large_err)]
+#![allow(clippy::result_large_err, reason = "a diagnostic is large and rare; a box around each would burden every signature")]
 
 mod backend;
 mod bind_groups;

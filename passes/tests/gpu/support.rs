@@ -106,6 +106,7 @@ impl Builder {
             lifetime: 0..1,
             placement: Some(Placement { memory, offset }),
             retained: None,
+            alone: None,
         });
         let view = PartView { resource: id, mips: 0..1, layers: 0..layers, dimension: ViewDimension::D2 };
         self.plan.outputs.push(PlannedOutput { name: name.to_owned(), view });
