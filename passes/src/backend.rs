@@ -19,7 +19,7 @@ use crate::timing::{FrameCounts, Stamps, Timing};
 /// A step that is ready to run.
 #[derive(Debug)]
 enum Prepared {
-    Draw(DrawStep),
+    Draw(Box<DrawStep>),
     Fullscreen(FullscreenStep),
     Compute(ComputeStep),
     Copy(CopyStep),
@@ -57,6 +57,19 @@ impl WgpuBackend {
         }
     }
 
+    /// Takes the scene's draw lists over, where the step draws. The step is prepared.
+    pub(crate) fn refresh_draw(&mut self, plan: &Plan, index: usize) -> Result<(), Diagnostic> {
+        let step = &plan.steps[index];
+        let device = self.store.gpu.device.clone();
+        let WgpuBackend { store, steps, .. } = self;
+        let Some(PreparedStep { kind: Prepared::Draw(draw), .. }) = steps.get_mut(index).and_then(Option::as_mut) else {
+            return Ok(());
+        };
+        let (refreshed, errors) = catch(&device, || draw.refresh(store, plan, step));
+        Subject::step(plan, step).check(&errors)?;
+        refreshed
+    }
+
     fn encoder(&mut self) -> &mut wgpu::CommandEncoder {
         let device = &self.store.gpu.device;
         self.encoder.get_or_insert_with(|| new_encoder(device, "frame"))
@@ -90,7 +103,7 @@ impl Backend for WgpuBackend {
             }
             encode(&prepared.kind, &mut encoder, store, None, &mut counts);
             drop(encoder.finish());
-            Ok(prepared)
+            Ok::<PreparedStep, Diagnostic>(prepared)
         });
         subject.check(&errors)?;
         let prepared = prepared?;
@@ -149,7 +162,7 @@ fn prepare_step(store: &mut Store, plan: &Plan, step: &Step, subject: &Subject) 
         clears.push(ClearStep::prepare(store, plan, subject, part, *value)?);
     }
     let kind = match &step.kind {
-        StepKind::Draw { .. } => Prepared::Draw(DrawStep::prepare(store, plan, step)?),
+        StepKind::Draw { .. } => Prepared::Draw(Box::new(DrawStep::prepare(store, plan, step)?)),
         StepKind::Fullscreen { fragment, targets } => Prepared::Fullscreen(FullscreenStep::prepare(store, plan, step, fragment, targets)?),
         StepKind::Compute { entry, groups } => Prepared::Compute(ComputeStep::prepare(store, plan, step, entry, *groups)?),
         StepKind::Copy { source, target } => Prepared::Copy(CopyStep::prepare(store, plan, step, source, target)?),

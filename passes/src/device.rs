@@ -35,10 +35,16 @@ pub struct GpuOptions {
 #[derive(Debug, Clone)]
 pub struct Adapter {
     adapter: wgpu::Adapter,
+    name: String,
     memory_budget: u64,
 }
 
 impl Adapter {
+    fn new(adapter: wgpu::Adapter, memory_budget: u64) -> Adapter {
+        let name = adapter.get_info().name;
+        Adapter { adapter, name, memory_budget }
+    }
+
     /// The best Vulkan adapter: discrete before integrated before virtual before software, then as the driver lists them.
     /// [`ADAPTER_VARIABLE`] overrides that. Error `device::no-adapter`.
     pub fn choose(memory_budget: Option<u64>) -> Result<Adapter, Vec<Diagnostic>> {
@@ -47,7 +53,7 @@ impl Adapter {
         let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         let kinds: Vec<wgpu::DeviceType> = adapters.iter().map(|adapter| adapter.get_info().device_type).collect();
         match best(&names, &kinds, wanted.as_deref()).and_then(|index| adapters.into_iter().nth(index)) {
-            Some(adapter) => Ok(Adapter { adapter, memory_budget: memory_budget.unwrap_or(DEFAULT_MEMORY_BUDGET) }),
+            Some(adapter) => Ok(Adapter::new(adapter, memory_budget.unwrap_or(DEFAULT_MEMORY_BUDGET))),
             None => Err(vec![no_adapter(&names, wanted.as_deref())]),
         }
     }
@@ -65,19 +71,19 @@ impl Adapter {
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         match block_on(instance.enumerate_adapters(wgpu::Backends::NOOP)).into_iter().next() {
-            Some(adapter) => Ok(Adapter { adapter, memory_budget: facts.memory_budget }),
+            Some(adapter) => Ok(Adapter { adapter, name: facts.name.clone(), memory_budget: facts.memory_budget }),
             None => Err(vec![Diagnostic::error("device::no-adapter", "the noop adapter is not there")]),
         }
     }
 
     /// The adapter's name, for messages.
-    pub fn name(&self) -> String {
-        self.adapter.get_info().name
+    pub fn name(&self) -> &str {
+        &self.name
     }
 
     /// What the planner must know.
     pub fn facts(&self) -> DeviceFacts {
-        facts(&self.name(), &self.adapter.limits(), self.adapter.features(), self.memory_budget)
+        facts(&self.name, &self.adapter.limits(), self.adapter.features(), self.memory_budget)
     }
 
     /// Name, kind, driver and backend, for people: one fact each.
@@ -95,11 +101,11 @@ impl Adapter {
     /// limits. Errors: `device::missing-feature` for each requirement that the adapter lacks, `device::cannot-open`.
     pub fn open(&self, requirements: &[Requirement], timing: bool) -> Result<Gpu, Vec<Diagnostic>> {
         let offered = self.adapter.features();
-        let name = self.name();
+        let name = &self.name;
         let missing: Vec<Diagnostic> = requirements
             .iter()
             .filter(|requirement| !offered.contains(wgpu_feature(requirement.feature)))
-            .map(|requirement| missing_feature(requirement, &name))
+            .map(|requirement| missing_feature(requirement, name))
             .collect();
         if !missing.is_empty() {
             return Err(missing);
@@ -118,7 +124,7 @@ impl Adapter {
             .map_err(|error| vec![Diagnostic::error("device::cannot-open", format!("the adapter `{name}` can't be opened: {error}"))])?;
         let errors = ErrorSink::default();
         errors.install(&device);
-        let facts = facts(&name, &device.limits(), device.features(), self.memory_budget);
+        let facts = facts(name, &device.limits(), device.features(), self.memory_budget);
         Ok(Gpu { device, queue, errors, facts })
     }
 }
@@ -127,7 +133,7 @@ impl Adapter {
 pub fn adapters() -> Vec<Adapter> {
     let mut all = enumerate();
     all.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-    all.into_iter().map(|adapter| Adapter { adapter, memory_budget: DEFAULT_MEMORY_BUDGET }).collect()
+    all.into_iter().map(|adapter| Adapter::new(adapter, DEFAULT_MEMORY_BUDGET)).collect()
 }
 
 /// An open device. Clones share it.
@@ -230,7 +236,7 @@ fn no_adapter(names: &[String], wanted: Option<&str>) -> Diagnostic {
 
 fn missing_feature(requirement: &Requirement, adapter: &str) -> Diagnostic {
     let feature = requirement.feature.name();
-    let message = format!("pass `{}` needs the feature `{feature}` {}, and `{adapter}` has none", requirement.pass, requirement.why);
+    let message = format!("pass `{}` needs the feature `{feature}` {}, and `{adapter}` lacks it", requirement.pass, requirement.why);
     Diagnostic::error("device::missing-feature", message)
         .at(requirement.span, format!("needs `{feature}`"))
         .hint(format!("choose another adapter with {ADAPTER_VARIABLE}, or another format"))

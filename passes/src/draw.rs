@@ -22,6 +22,9 @@ use crate::timing::{FrameCounts, Stamps};
 /// A Draw that is ready to run.
 #[derive(Debug)]
 pub(crate) struct DrawStep {
+    key: RenderKey,
+    cull: CullDoc,
+    list: usize,
     groups: StepGroups,
     attachments: Attachments,
     calls: Vec<Call>,
@@ -51,20 +54,32 @@ impl DrawStep {
         let attachments = store.attachments(plan, step, targets)?;
         // The usual class is always created, so that a shader that fails does so even where the scene shows nothing.
         store.render_pipeline(plan, step, &variant(&key, *cull, false, false))?;
+        let has_vertices = !attributes.is_empty();
+        let mut prepared = DrawStep { key, cull: *cull, list: *list, groups, attachments, calls: Vec::new(), has_vertices };
+        prepared.refresh(store, plan, step)?;
+        Ok(prepared)
+    }
+
+    /// Takes the scene's draw list over. Creates something only for classes and materials that the step has not met before.
+    /// Runs in the caller's error scope.
+    pub(crate) fn refresh(&mut self, store: &mut Store, plan: &Plan, step: &Step) -> Result<(), Diagnostic> {
+        let subject = Subject::step(plan, step);
         let scene = store.scene.scene.clone();
         let batches: &[DrawBatch] =
-            plan.draw_lists.get(*list).and_then(|(filter, view)| draw_list(&scene, *filter, *view)).unwrap_or_default();
+            plan.draw_lists.get(self.list).and_then(|(filter, view)| draw_list(&scene, *filter, *view)).unwrap_or_default();
         let nothing = MaterialBinding::default();
         let mut calls = Vec::with_capacity(batches.len());
         for batch in batches.iter().filter(|batch| batch.index_count > 0 && batch.instance_count > 0) {
-            let pipeline = store.render_pipeline(plan, step, &variant(&key, *cull, batch.mirrored, batch.double_sided))?;
-            let material = store.material_group(&subject, &groups, scene.materials.get(batch.material).unwrap_or(&nothing))?;
+            let key = variant(&self.key, self.cull, batch.mirrored, batch.double_sided);
+            let pipeline = store.render_pipeline(plan, step, &key)?;
+            let material = store.material_group(&subject, &self.groups, scene.materials.get(batch.material).unwrap_or(&nothing))?;
             // The ends were checked not to overflow when the scene was taken over.
             let indices = batch.first_index..batch.first_index.saturating_add(batch.index_count);
             let instances = batch.first_instance..batch.first_instance.saturating_add(batch.instance_count);
             calls.push(Call { pipeline, material, indices, base_vertex: batch.base_vertex, instances });
         }
-        Ok(DrawStep { groups, attachments, calls, has_vertices: !attributes.is_empty() })
+        self.calls = calls;
+        Ok(())
     }
 
     pub(crate) fn encode(

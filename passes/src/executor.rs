@@ -15,7 +15,7 @@ use crate::backend::WgpuBackend;
 use crate::check;
 use crate::device::Gpu;
 use crate::readback::{self, ReadImage};
-use crate::scene_data::SceneData;
+use crate::scene_data::{Changed, SceneData};
 use crate::store::Store;
 use crate::timing::{FrameCounts, StepTime, Timing};
 
@@ -67,21 +67,25 @@ impl Executor {
     }
 
     /// Takes another state of the scene over. Equal bytes cost a comparison, other bytes of equal length are written in place;
-    /// bind groups are made anew only if a table changed its length or a texture changed. The scene must fit the same plan:
-    /// its draw lists and views are those that the plan asks for.
+    /// bind groups are made anew only if a table changed its length or a texture changed, and other draw lists create only what
+    /// they show for the first time. The scene must fit the same plan: it publishes the draw lists and views that the plan asks
+    /// for.
     pub fn update_scene(&mut self, scene: Arc<PublishedScene>) -> Result<(), Vec<Diagnostic>> {
         let Store { gpu, schema, scene: data, bind_groups, .. } = &mut self.backend.store;
         let changed = data.update(gpu, &self.plan, schema, scene)?;
         if changed.bound {
             bind_groups.forget_materials();
         }
-        let stale = |kind: &StepKind| match kind {
-            StepKind::Draw { .. } => changed.bound || changed.draws,
-            StepKind::Fullscreen { .. } | StepKind::Compute { .. } => changed.bound,
-            StepKind::Copy { .. } | StepKind::Clear { .. } => false,
-        };
-        let steps = self.plan.steps.iter().enumerate().filter(|(_, step)| stale(&step.kind));
-        let problems: Vec<Diagnostic> = steps.filter_map(|(index, _)| self.backend.prepare_step(&self.plan, index).err()).collect();
+        let mut problems = Vec::new();
+        for (index, step) in self.plan.steps.iter().enumerate() {
+            let binds = !matches!(step.kind, StepKind::Copy { .. } | StepKind::Clear { .. });
+            let done = match changed {
+                Changed { bound: true, .. } if binds => self.backend.prepare_step(&self.plan, index),
+                Changed { draws: true, .. } => self.backend.refresh_draw(&self.plan, index),
+                _ => Ok(()),
+            };
+            problems.extend(done.err());
+        }
         if problems.is_empty() { Ok(()) } else { Err(problems) }
     }
 

@@ -45,6 +45,32 @@ pub fn facts(name: &str, limits: &wgpu::Limits, features: wgpu::Features, memory
     }
 }
 
+/// What Mesa 22.3's lavapipe, the software Vulkan driver of Debian 12, offers. For noop devices.
+pub fn lavapipe() -> DeviceFacts {
+    DeviceFacts {
+        name: "lavapipe's limits".to_owned(),
+        max_texture_1d: 16384,
+        max_texture_2d: 16384,
+        max_texture_3d: 4096,
+        max_layers: 2048,
+        max_buffer_bytes: (2 << 30) - 1,
+        max_storage_binding_bytes: 128 << 20,
+        max_uniform_binding_bytes: 64 << 10,
+        max_workgroups: 65535,
+        max_workgroup_invocations: 1024,
+        max_workgroup_size: [1024; 3],
+        max_color_attachments: 8,
+        max_attachment_bytes: 128,
+        max_sampled_textures: 37,
+        max_samplers: 32,
+        max_storage_textures: 36,
+        max_storage_buffers: 32,
+        max_uniform_buffers: 15,
+        features: FEATURES.iter().map(|(feature, _)| *feature).collect(),
+        memory_budget: 4 << 30,
+    }
+}
+
 /// WebGPU's default limits, changed to what the facts say. Used for noop devices.
 pub(crate) fn limits_of(facts: &DeviceFacts) -> wgpu::Limits {
     wgpu::Limits {
@@ -67,6 +93,10 @@ pub(crate) fn limits_of(facts: &DeviceFacts) -> wgpu::Limits {
         max_storage_textures_per_shader_stage: facts.max_storage_textures,
         max_storage_buffers_per_shader_stage: facts.max_storage_buffers,
         max_uniform_buffers_per_shader_stage: facts.max_uniform_buffers,
+        max_buffers_and_acceleration_structures_per_shader_stage: facts
+            .max_storage_buffers
+            .saturating_add(facts.max_uniform_buffers)
+            .saturating_add(wgpu::Limits::defaults().max_vertex_buffers),
         ..wgpu::Limits::defaults()
     }
 }

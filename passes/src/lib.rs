@@ -1,13 +1,11 @@
 //! Runs plans of `luminaire-graph` on wgpu.
 //!
-//! [`device`] opens a GPU, [`executor`] prepares a plan on it and renders frames. One file per pass kind ([`draw`],
-//! [`fullscreen`], [`compute`], [`copy`], [`clear`]) says how a step is prepared and encoded; the files beside them make what
-//! steps share.
+//! [`device`] opens a GPU, [`executor`] prepares a plan on it and renders frames. One file per pass kind (`draw`, `fullscreen`,
+//! `compute`, `copy`, `clear`) says how a step is prepared and encoded; the files beside them make what steps share.
 //!
 //! Every error of wgpu comes back as a diagnostic; none panics.
 
-// A diagnostic is large and rare; a box around each would burden every signature for nothing.
-#![allow(clippy::result_large_err)]
+#![allow(clippy::result_large_err, reason = "a diagnostic is large and rare; a box around each would burden every signature")]
 
 mod backend;
 mod bind_groups;

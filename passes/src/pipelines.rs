@@ -66,7 +66,7 @@ impl RenderKey {
             fragment: fragment.map(str::to_owned),
             colors: targets.colors.iter().map(|color| color.as_ref().map(|color| (color.format, color.blend))).collect(),
             depth: targets.depth.as_ref().map(|depth| {
-                // Formats of integers or with a fixed step take the bias as given; a slope is compared by its bits.
+                // A slope is compared by its bits.
                 (depth.format, depth.write, depth.compare, depth.bias, depth.slope_bias.to_bits())
             }),
             samples: targets.samples,

@@ -138,6 +138,7 @@ mod tests {
             lifetime: 0..2,
             placement: Some(Placement { memory: MemoryId(0), offset }),
             retained: None,
+            alone: None,
         };
         let holders = vec![ResourceId(0), ResourceId(1)];
         let mut copy = step("copy", StepKind::Copy { source: view(0), target: view(1) });

@@ -103,6 +103,7 @@ pub(crate) fn tables_are_updated(gpu: &Gpu) {
     executor.update_scene(Arc::new(scene.clone())).expect("an update");
     let third = executor.render_frame().expect("a frame");
     assert_eq!((third.counts.draw_calls, third.pipelines_created), (1, first.pipelines_created));
+    assert_eq!(first.bind_groups_created, third.bind_groups_created, "no new material is shown");
     assert_near(read(&executor, "color").pixel(4, 7), [0.0; 4]);
 
     scene.views[0] = [1.0f32; 4].iter().flat_map(|value| value.to_le_bytes()).collect();

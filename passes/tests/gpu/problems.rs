@@ -8,6 +8,7 @@ use luminaire_graph::expand::types::Dimension;
 use luminaire_graph::plan::{BindingTarget, Stages};
 use luminaire_graph::source::{SourceMap, Span};
 use luminaire_graph::syntax::document::CullDoc;
+use luminaire_passes::facts::lavapipe;
 use luminaire_passes::{Executor, Gpu, GpuOptions};
 
 use crate::draw::{batch, draw, draw_list, geometry};
@@ -78,6 +79,10 @@ pub(crate) fn noop_runs() {
     assert_eq!((stats.counts.draw_calls, stats.times), (1, None));
     assert_eq!(executor.read_output("color").expect("an image").bytes.len(), 256);
     crate::fullscreen::samplers().render(&gpu);
+    let gpu = noop(lavapipe());
+    assert_eq!((gpu.facts().max_texture_2d, gpu.facts().name.as_str()), (16384, "lavapipe's limits"));
+    assert!(gpu.facts().features.is_empty(), "only what was required");
+    gradient().render(&gpu);
 }
 
 pub(crate) fn noop_limits() {

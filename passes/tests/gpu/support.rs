@@ -72,15 +72,9 @@ impl Builder {
     pub(crate) fn texture(&mut self, name: &str, shape: TextureShape, usage: Usage) -> ResourceId {
         let format = shape.formats[0];
         let bytes = u64::from(shape.width) * u64::from(shape.height) * u64::from(shape.depth * shape.layers) * 16;
-        self.resource(
-            name,
-            PlannedShape::Texture(shape.clone(), format),
-            MemoryKind::Texture(shape.clone(), format),
-            bytes,
-            0,
-            usage,
-            shape.layers,
-        )
+        let layers = shape.layers;
+        let planned = PlannedShape::Texture(shape.clone(), format);
+        self.resource(name, planned, MemoryKind::Texture(shape, format), bytes, 0, usage, layers)
     }
 
     /// A buffer in a memory of its own at some offset, which is an output, too.
@@ -112,6 +106,7 @@ impl Builder {
             lifetime: 0..1,
             placement: Some(Placement { memory, offset }),
             retained: None,
+            alone: None,
         });
         let view = PartView { resource: id, mips: 0..1, layers: 0..layers, dimension: ViewDimension::D2 };
         self.plan.outputs.push(PlannedOutput { name: name.to_owned(), view });
@@ -147,7 +142,7 @@ impl Builder {
             .map(|(variable, target)| {
                 let module = &self.plan.shaders[shader.expect("a shader")].module;
                 let global = module.global_variables.iter().find(|(_, global)| global.name.as_deref() == Some(variable));
-                let place = global.and_then(|(_, global)| global.binding.clone()).expect("a variable");
+                let place = global.and_then(|(_, global)| global.binding).expect("a variable");
                 Binding { group: place.group, binding: place.binding, variable: variable.to_owned(), stages, target }
             })
             .collect();
