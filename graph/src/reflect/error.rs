@@ -171,8 +171,8 @@ impl ReflectError {
             | ReflectError::WrittenBinding { span, .. }
             | ReflectError::WrittenLocation { span, .. }
             | ReflectError::MissingLocation { span, .. } => (span, "here"),
-            ReflectError::UnnamedOutput { span, .. }
-            | ReflectError::TwoInputStructs { span, .. }
+            ReflectError::UnnamedOutput { span, .. } => (span, "this result"),
+            ReflectError::TwoInputStructs { span, .. }
             | ReflectError::WorkgroupSize { span, .. }
             | ReflectError::VertexWrites { span, .. }
             | ReflectError::Stage { span, .. } => (span, "this entry point"),
