@@ -15,6 +15,7 @@ mod globals;
 mod import;
 pub mod interface;
 mod io;
+mod limits;
 mod overrides;
 mod places;
 mod text;

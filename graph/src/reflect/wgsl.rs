@@ -68,8 +68,11 @@ fn invalid(error: &naga::WithSpan<ValidationError>, names: &Places<'_>) -> Refle
         Some(root) => format!("{what}: {root}"),
         None => what,
     };
-    let mut places: Vec<Place> =
-        error.spans().map(|(span, text)| (names.naga_span(*span), describe(text).to_owned())).filter(|place| place.0.is_somewhere()).collect();
+    let mut places: Vec<Place> = error
+        .spans()
+        .map(|(span, text)| (names.naga_span(*span), describe(text).to_owned()))
+        .filter(|place| place.0.is_somewhere())
+        .collect();
     if places.is_empty() {
         let item = match error.as_inner() {
             ValidationError::Function { name, .. } | ValidationError::EntryPoint { name, .. } => names.function_span(name),

@@ -46,7 +46,7 @@ fn own_problems_and_those_of_naga_come_together() {
 #[test]
 fn variables_that_nothing_can_feed() {
     check(
-        "var many: binding_array<texture_2d<f32>>;
+        "enable wgpu_binding_array; var many: binding_array<texture_2d<f32>>;
 struct Nested { inner: array<atomic<f32>, 4> }
 var<storage, read_write> sums: array<Nested>;
 var<workgroup> fast: atomic<f32>;
@@ -57,6 +57,27 @@ var<immediate> constants: vec4<f32>;
 var outside: texture_external;
 @compute @workgroup_size(1) fn main() {}",
         "
+        reflect::unsupported-variable: the variable `many` is a binding array, which no pipeline can bind
+        at main.wgsl:1:32 `many`: declared here
+        hint shaders can have uniform and storage buffers, textures, storage textures and samplers
+        reflect::float-atomic: the variable `sums` holds float atomics (`array<Nested>`)
+        at main.wgsl:3:26 `sums`: declared here
+        hint their sums depend on the order of invocations; accumulate fixed-point numbers in `atomic<u32>`, or gather instead
+        reflect::float-atomic: the variable `fast` holds float atomics (`atomic<f32>`)
+        at main.wgsl:4:16 `fast`: declared here
+        hint their sums depend on the order of invocations; accumulate fixed-point numbers in `atomic<u32>`, or gather instead
+        reflect::storage-format: the storage texture `narrow` has format `r16unorm`, which is not known to pipelines
+        at main.wgsl:5:5 `narrow`: declared here
+        reflect::storage-format: the storage texture `small` has format `r8unorm`, which can't be stored to
+        at main.wgsl:6:5 `small`: declared here
+        reflect::storage-format: the storage texture `both` has format `rgba16float`, which can be read or written, not both by one variable
+        at main.wgsl:7:5 `both`: declared here
+        reflect::unsupported-variable: the variable `constants` is immediate data (a push constant), which no pipeline can bind
+        at main.wgsl:8:16 `constants`: declared here
+        hint shaders can have uniform and storage buffers, textures, storage textures and samplers
+        reflect::unsupported-variable: the variable `outside` is an external texture, which no pipeline can bind
+        at main.wgsl:9:5 `outside`: declared here
+        hint shaders can have uniform and storage buffers, textures, storage textures and samplers
         ",
     );
 }
@@ -119,40 +140,57 @@ fn syntax_errors_have_all_their_labels_and_notes() {
         at main.wgsl:2:21 `b`: definition of `b`
         ",
     );
-}
-
-#[test]
-fn t1() {
-    check("fn a() { let x = 1; x = 2; }", "");
-}
-
-#[test]
-fn t2() {
-    check("fn a() -> f32 { return 1.0;", "");
+    check(
+        "fn a() { let x = 1; x = 2; }",
+        "
+        reflect::wgsl-syntax: invalid left-hand side of assignment
+        at main.wgsl:1:21 `x`: cannot assign to this expression
+        at main.wgsl:1:14 `x`: this is an immutable binding
+        note consider declaring `x` with `var` instead of `let`
+        ",
+    );
+    check(
+        "fn a() -> f32 { return 1.0;",
+        "
+        reflect::unbalanced-bracket: `{` has no partner in its file
+        at main.wgsl:1:15 `{`: here
+        ",
+    );
 }
 
 #[test]
 fn validation_errors_have_their_causes() {
-    check("struct A { a: f32, b: array<f32, 4> }\nvar<uniform> x: A;\n@compute @workgroup_size(1) fn main() { _ = x.a; }", "
+    check(
+        "struct A { a: f32, b: array<f32, 4> }\nvar<uniform> x: A;\n@compute @workgroup_size(1) fn main() { _ = x.a; }",
+        "
         reflect::wgsl-invalid: the variable `x` is invalid: The array stride 4 is not a multiple of the required alignment 16
         at main.wgsl:2:1 `var<uniform> x: A;`: this variable
         note Alignment requirements for address space Uniform are not met by [1]
-        ");
-}
-
-#[test]
-fn t3() {
-    check("@compute @workgroup_size(100000) fn main() {}", "");
-}
-
-#[test]
-fn t4() {
-    check("@fragment fn main(@location(0) id: u32) {}", "");
-}
-
-#[test]
-fn t5() {
-    check("@compute @workgroup_size(1) fn main() { let x: f64 = 1.0lf; }", "");
+        ",
+    );
+    check(
+        "@compute @workgroup_size(100000) fn main() {}",
+        "
+        reflect::wgsl-invalid: the entry point `main` is invalid: Workgroup size is out of range
+        at main.wgsl:1:37 `main`: here
+        ",
+    );
+    check(
+        "@fragment fn main(@location(0) id: u32) {}",
+        "
+        reflect::wgsl-invalid: the entry point `main` is invalid: `@interpolate(flat) must be explicitly specified for integer I/O
+        at main.wgsl:1:14 `main`: here
+        note Argument 0 varying error
+        ",
+    );
+    check(
+        "@compute @workgroup_size(1) fn main() { let x: f64 = 1.0lf; }",
+        "
+        reflect::wgsl-invalid: the entry point `main` is invalid: Using `f64` values requires the `naga::valid::Capabilities::FLOAT64` flag
+        at main.wgsl:1:54 `1.0lf`: this expression
+        note Expression [0] is invalid
+        ",
+    );
 }
 
 #[test]

@@ -34,9 +34,49 @@ const OTHER: &str = "const one = 1.0;\nfn shared_value() -> f32 { return one; }\
 
 /// What mutations put in.
 const PIECES: [&str; 44] = [
-    "{", "}", "(", ")", "[", "]", "<", ">", ";", ",", ":", "@", "#", "\"", "/*", "*/", "//", "\n", "ä", "→", "\u{0}", "\u{feff}", "0", "1u",
-    "4294967296", "0x", "1e99f", "-", "@group(0)", "@location(0) ", "@binding(1)", "var<uniform> ", "array<f32, 0>", "array<vec3<f32>>",
-    "atomic<f32>", "struct ", "fn ", "return", "override ", "f16", "texture_external", "binding_array<sampler>", "\n#import \"other.wgsl\"\n",
+    "{",
+    "}",
+    "(",
+    ")",
+    "[",
+    "]",
+    "<",
+    ">",
+    ";",
+    ",",
+    ":",
+    "@",
+    "#",
+    "\"",
+    "/*",
+    "*/",
+    "//",
+    "\n",
+    "ä",
+    "→",
+    "\u{0}",
+    "\u{feff}",
+    "0",
+    "1u",
+    "4294967296",
+    "0x",
+    "1e99f",
+    "-",
+    "@group(0)",
+    "@location(0) ",
+    "@binding(1)",
+    "var<uniform> ",
+    "array<f32, 0>",
+    "array<vec3<f32>>",
+    "atomic<f32>",
+    "struct ",
+    "fn ",
+    "return",
+    "override ",
+    "f16",
+    "texture_external",
+    "binding_array<sampler>",
+    "\n#import \"other.wgsl\"\n",
     "\n#import \"main.wgsl\"\n",
 ];
 
@@ -61,7 +101,7 @@ fn the_seed_is_right() {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 600, failure_persistence: None, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 3000, failure_persistence: None, ..ProptestConfig::default() })]
 
     #[test]
     fn mutated_shaders_do_not_panic(
@@ -103,11 +143,11 @@ fn deep_and_long_texts_do_not_overflow() {
         format!("/*{}", "/*".repeat(deep)),
         (1..deep).fold("override o0: u32 = 1;\n".to_owned(), |text, i| text + &format!("override o{i}: u32 = o{} + o{};\n", i - 1, i - 1))
             + &format!("@compute @workgroup_size(o{}) fn main() {{}}", deep - 1),
+        (1..deep).rev().fold("fn f0() {}".to_owned(), |text, i| text + &format!("fn f{i}() {{ f{}(); }}\n", i - 1)),
         (1..deep).fold("alias t0 = f32;\n".to_owned(), |text, i| text + &format!("alias t{i} = array<t{}, 1>;\n", i - 1))
             + &format!("var<storage> x: t{}; @compute @workgroup_size(1) fn main() {{ _ = x[0][0]; }}", deep - 1),
     ];
     for text in texts {
-        eprintln!("{}", &text[..40]);
         let (result, sources) = run(&[("main.wgsl", &text)]);
         if let Err(problems) = result {
             assert!(!luminaire_graph::diagnostic::render(&problems, &sources, false).is_empty());

@@ -1,5 +1,5 @@
 //! Reflection of WGSL: interfaces of shaders in memory, and exact places of everything that can be wrong with them.
-#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, clippy::print_stderr)]
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 mod errors;
 mod hostile;

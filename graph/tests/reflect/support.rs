@@ -143,7 +143,6 @@ fn describe_global(global: &Global) -> String {
 }
 
 fn describe_layout(layout: &Layout) -> String {
-    let members: Vec<_> =
-        layout.members.iter().map(|member| format!("{}: {} @{}", member.name, member.wgsl, member.offset)).collect();
+    let members: Vec<_> = layout.members.iter().map(|member| format!("{}: {} @{}", member.name, member.wgsl, member.offset)).collect();
     format!("{} bytes{} [{}]", layout.size, if layout.runtime_array { " each" } else { "" }, members.join(", "))
 }
