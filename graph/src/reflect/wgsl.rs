@@ -20,7 +20,7 @@ const CORE: Capabilities =
 const OPTIONAL: [(Feature, Capabilities); 3] = [
     (Feature::ShaderF16, Capabilities::SHADER_FLOAT16),
     (Feature::PrimitiveIndex, Capabilities::PRIMITIVE_INDEX),
-    (Feature::Subgroups, Capabilities::SUBGROUP.union(Capabilities::SUBGROUP_BARRIER)),
+    (Feature::Subgroups, Capabilities::SUBGROUP),
 ];
 
 /// Parses the joined text.
@@ -34,7 +34,7 @@ pub(super) fn parse(joined: &JoinedText) -> Result<naga::Module, ReflectError> {
 
 /// Validates a module; also tells which features it needs.
 pub(super) fn validate(module: &naga::Module, places: &Places<'_>) -> Result<(ModuleInfo, Vec<Feature>), ReflectError> {
-    let run = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module);
+    let run = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module).map_err(Box::new);
     // Most shaders need no feature.
     if let Ok(info) = run(CORE) {
         return Ok((info, Vec::new()));

@@ -207,6 +207,11 @@ fn features_are_those_without_which_the_module_is_invalid() {
         "needs subgroups
          Compute main [64, 1, 1]",
     );
+    check_interface(
+        "enable primitive_index; @fragment fn main(@builtin(primitive_index) id: u32) { if (id == 1u) { discard; } }",
+        "needs primitive-index
+         Fragment main discards",
+    );
 }
 
 #[test]

@@ -74,7 +74,7 @@ pub(crate) fn describe_problems(problems: &[Diagnostic], sources: &SourceMap) ->
         for note in &problem.notes {
             out += &format!("note {note}\n");
         }
-        for hint in &problem.hint {
+        if let Some(hint) = &problem.hint {
             out += &format!("hint {hint}\n");
         }
     }
