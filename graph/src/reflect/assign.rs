@@ -19,6 +19,10 @@ pub(super) fn assign(module: &mut Module, places: &Places<'_>, published: &Publi
     let mut errors = Vec::new();
     assign_bindings(module, places, published, &mut errors);
     assign_locations(module, places, &mut errors);
+    // Overrides get their values by name; a numeric id would hide the name from the device.
+    for (_, constant) in module.overrides.iter_mut() {
+        constant.id = constant.id.filter(|_| constant.name.is_none());
+    }
     errors
 }
 

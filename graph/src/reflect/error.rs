@@ -24,6 +24,9 @@ pub(super) enum ReflectError {
     /// Too much text.
     #[error("`{path}` and what was imported before it have more than {limit} bytes")]
     TooLarge { path: String, span: Span, limit: usize },
+    /// More than naga can follow.
+    #[error("{what}")]
+    TooComplex { what: String, span: Span },
     /// `/*` without `*/`.
     #[error("a comment is never closed")]
     OpenComment { span: Span },
@@ -90,6 +93,7 @@ impl ReflectError {
             ReflectError::ImportSyntax { .. } => "reflect::import-syntax",
             ReflectError::ImportCycle { .. } => "reflect::import-cycle",
             ReflectError::TooLarge { .. } => "reflect::shader-too-large",
+            ReflectError::TooComplex { .. } => "reflect::too-complex",
             ReflectError::OpenComment { .. } => "reflect::open-comment",
             ReflectError::Unbalanced { .. } => "reflect::unbalanced-bracket",
             ReflectError::Syntax { .. } => "reflect::wgsl-syntax",
@@ -168,11 +172,12 @@ impl ReflectError {
             ReflectError::ImportPath { span, .. } | ReflectError::TooLarge { span, .. } => (span, "this file"),
             ReflectError::ImportSyntax { span, .. }
             | ReflectError::Unbalanced { span, .. }
+            | ReflectError::TooComplex { span, .. }
             | ReflectError::WrittenBinding { span, .. }
             | ReflectError::WrittenLocation { span, .. }
             | ReflectError::MissingLocation { span, .. } => (span, "here"),
-            ReflectError::UnnamedOutput { span, .. }
-            | ReflectError::TwoInputStructs { span, .. }
+            ReflectError::UnnamedOutput { span, .. } => (span, "this result"),
+            ReflectError::TwoInputStructs { span, .. }
             | ReflectError::WorkgroupSize { span, .. }
             | ReflectError::VertexWrites { span, .. }
             | ReflectError::Stage { span, .. } => (span, "this entry point"),

@@ -9,6 +9,7 @@ use std::collections::BTreeMap;
 use std::ops::Range;
 
 use super::error::ReflectError;
+use super::limits;
 use super::text::JoinedText;
 use super::tokens::{Scanned, Token, TokenKind, scan, unbalanced};
 use crate::diagnostic::nearest;
@@ -44,7 +45,7 @@ enum State {
 
 /// Reads a shader and its imports. All problems of all files that can be reached are reported.
 pub(super) fn load(path: &str, requested_at: Span, files: &dyn Files, sources: &mut SourceMap) -> Result<JoinedText, Vec<ReflectError>> {
-    let mut loader = Loader { files, sources, errors: Vec::new(), bytes: 0, states: BTreeMap::new(), ordered: Vec::new() };
+    let mut loader = Loader { files, sources, errors: Vec::new(), bytes: 0, declarations: 0, states: BTreeMap::new(), ordered: Vec::new() };
     loader.follow(path, requested_at);
     if loader.errors.is_empty() { Ok(join(&loader.ordered)) } else { Err(loader.errors) }
 }
@@ -54,6 +55,7 @@ struct Loader<'a> {
     sources: &'a mut SourceMap,
     errors: Vec<ReflectError>,
     bytes: usize,
+    declarations: usize,
     states: BTreeMap<String, State>,
     /// Done files in dependency order.
     ordered: Vec<ShaderFile>,
@@ -122,6 +124,7 @@ impl Loader<'_> {
         self.states.insert(path.to_owned(), State::Open);
         let scanned = scan(&loaded.text);
         self.check_closed(id, &scanned, &loaded.text);
+        self.check_limits(id, &scanned.tokens, &loaded.text, asked_at);
         let directives = directives(&scanned.tokens, &loaded.text);
         let mut imports = Vec::new();
         let mut hidden = directives.clone();
@@ -141,6 +144,18 @@ impl Loader<'_> {
         }
         hidden.sort_by_key(|range| range.start);
         Some(ShaderFile { id, text: loaded.text, imports, directives, hidden })
+    }
+
+    fn check_limits(&mut self, id: FileId, tokens: &[Token], text: &str, asked_at: Span) {
+        if let Some((range, what)) = limits::excess(text, tokens) {
+            self.errors.push(ReflectError::TooComplex { what, span: Span::new(id, range.start, range.end) });
+        }
+        let before = self.declarations;
+        self.declarations += limits::declarations(text, tokens);
+        if before <= limits::MAX_DECLARATIONS && self.declarations > limits::MAX_DECLARATIONS {
+            let what = format!("a shader and its imports have more than {} declarations", limits::MAX_DECLARATIONS);
+            self.errors.push(ReflectError::TooComplex { what, span: asked_at });
+        }
     }
 
     fn check_closed(&mut self, id: FileId, scanned: &Scanned, text: &str) {

@@ -42,7 +42,8 @@ pub struct EntryPoint {
     pub stage: Stage,
     /// Of a compute entry point, else zero. Where overrides take part, with their defaults; see [`Shader::workgroup_size`].
     pub workgroup_size: [u32; 3],
-    /// The resource variables that it uses, directly or through what it calls, in the order of the file.
+    /// The resource variables that it uses, directly or through what it calls, in the order of the file. One whose size alone is asked
+    /// for (`arrayLength`, `textureDimensions`) is used, and neither read nor written.
     pub globals: Vec<Global>,
     /// Inputs of a vertex entry point: names and components of float vectors, in location order (location = index).
     pub vertex_inputs: Vec<VertexInput>,
@@ -126,7 +127,8 @@ pub struct Global {
     pub span: Span,
     /// Assigned: 1 for what every draw binds anew (material textures and samplers), 0 for all else.
     pub group: u32,
-    /// Assigned: the place among the file's globals of that group.
+    /// Assigned. Group 0: the place among the file's variables of that group; group 1: the place in the schema's material textures,
+    /// samplers after them.
     pub binding: u32,
     /// What it is.
     pub kind: GlobalKind,
@@ -146,7 +148,7 @@ pub enum GlobalKind {
         writable: bool,
         /// This entry point reads it (or applies atomics).
         reads: bool,
-        /// Uses float atomics or has results that depend on the order of invocations, as far as can be told.
+        /// Its memory.
         layout: Layout,
     },
     /// `texture_2d<f32>` and kin.

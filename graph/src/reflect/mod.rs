@@ -15,6 +15,7 @@ mod globals;
 mod import;
 pub mod interface;
 mod io;
+mod limits;
 mod overrides;
 mod places;
 mod text;
@@ -23,6 +24,7 @@ mod types;
 mod varyings;
 mod wgsl;
 
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 use crate::diagnostic::Diagnostic;
@@ -48,7 +50,15 @@ pub fn reflect(
     published: &PublishedSchema,
     sources: &mut SourceMap,
 ) -> Result<Shader, Vec<Diagnostic>> {
-    reflect_steps(path, requested_at, files, published, sources).map_err(|errors| errors.into_iter().map(Diagnostic::from).collect())
+    reflect_steps(path, requested_at, files, published, sources)
+        .map_err(|errors| without_repeats(errors.into_iter().map(Diagnostic::from).collect()))
+}
+
+/// Keeps the first of the problems of one kind at one place: a struct that two entry points share is wrong once.
+fn without_repeats(problems: Vec<Diagnostic>) -> Vec<Diagnostic> {
+    let mut seen = BTreeSet::new();
+    let place = |problem: &Diagnostic| problem.primary.as_ref().map(|label| label.span).filter(|span| span.is_somewhere());
+    problems.into_iter().filter(|problem| place(problem).is_none_or(|span| seen.insert((problem.code, span)))).collect()
 }
 
 /// The steps, in order.
@@ -69,7 +79,7 @@ fn reflect_steps(
     if errors.iter().any(ReflectError::blocks_validation) {
         return Err(errors);
     }
-    let (info, features) = match wgsl::validate(&module, &joined) {
+    let (info, features) = match wgsl::validate(&module, &places) {
         Ok(valid) => valid,
         Err(error) => {
             errors.push(error);

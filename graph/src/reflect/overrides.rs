@@ -70,7 +70,7 @@ impl Walk<'_> {
         }
         let mut blocks: Vec<&Block> = vec![&function.body];
         while let Some(block) = blocks.pop() {
-            for statement in block.iter() {
+            for statement in block {
                 match statement {
                     Statement::Call { function, .. } => self.pending.push(*function),
                     Statement::Block(inner) => blocks.push(inner),
@@ -112,10 +112,8 @@ impl Walk<'_> {
             let Ok(expression) = self.module.global_expressions.try_get(handle) else { continue };
             match expression {
                 // One level of defaults at a time would recurse; they stand in the same arena.
-                Expression::Override(constant) => {
-                    if self.overrides.insert(*constant) {
-                        open.extend(self.module.overrides.try_get(*constant).ok().and_then(|constant| constant.init));
-                    }
+                Expression::Override(constant) if self.overrides.insert(*constant) => {
+                    open.extend(self.module.overrides.try_get(*constant).ok().and_then(|constant| constant.init));
                 }
                 Expression::Compose { components, .. } => open.extend(components),
                 Expression::Access { base, index } => open.extend([*base, *index]),

@@ -241,13 +241,13 @@ impl<'a> Reader<'a> {
     fn function(&mut self, attributes: Vec<(String, Range<usize>)>) -> Option<Item> {
         let named = self.name(attributes)?;
         let parts = if self.at_mark('(') { self.parts(')') } else { Vec::new() };
-        let start = self.end_of_last();
+        let start = self.peek().map_or(0, |token| token.range.start);
         while self.peek().is_some() && !self.at_mark('{') {
             self.skip_group();
         }
-        let result = self.tokens.get(self.at).map_or(start, |token| token.range.start);
+        let result = start..self.end_of_last().max(start);
         self.skip_group();
-        Some(Item { named, parts, result: start..result })
+        Some(Item { named, parts, result })
     }
 
     fn structure(&mut self, attributes: Vec<(String, Range<usize>)>) -> Option<Item> {
@@ -279,7 +279,7 @@ mod tests {
         let mut joined = JoinedText::default();
         joined.push(file, source, 0..source.len(), &[]);
         let places = Places::of(&joined);
-        let at = |span| sources.text(span).trim().to_owned();
+        let at = |span| sources.text(span).to_owned();
         assert_eq!(at(places.value_span("count")), "count");
         let (attributes, span) = places.value_attributes("cells", &["group", "binding"]).unwrap();
         assert_eq!((attributes, at(span)), (vec!["group", "binding"], "@group(0)".to_owned()));

@@ -83,8 +83,7 @@ pub(super) fn scan(source: &str) -> Scanned {
     let mut at = 0;
     // Nothing but blanks since the last line break.
     let mut line_is_blank = true;
-    while let Some(c) = source.get(at..).and_then(|rest| rest.chars().next()) {
-        let rest = &source[at..];
+    while let Some((rest, c)) = source.get(at..).and_then(|rest| Some((rest, rest.chars().next()?))) {
         let start = at;
         let kind = if is_line_break(c) {
             line_is_blank = true;

@@ -7,8 +7,10 @@ use std::error::Error;
 use naga::valid::{Capabilities, ModuleInfo, ValidationError, ValidationFlags, Validator};
 
 use super::error::{Place, ReflectError};
+use super::places::Places;
 use super::text::JoinedText;
 use crate::device::Feature;
+use crate::source::Span;
 
 /// What shaders may use on every adapter.
 const CORE: Capabilities =
@@ -18,7 +20,7 @@ const CORE: Capabilities =
 const OPTIONAL: [(Feature, Capabilities); 3] = [
     (Feature::ShaderF16, Capabilities::SHADER_FLOAT16),
     (Feature::PrimitiveIndex, Capabilities::PRIMITIVE_INDEX),
-    (Feature::Subgroups, Capabilities::SUBGROUP.union(Capabilities::SUBGROUP_BARRIER)),
+    (Feature::Subgroups, Capabilities::SUBGROUP),
 ];
 
 /// Parses the joined text.
@@ -31,21 +33,21 @@ pub(super) fn parse(joined: &JoinedText) -> Result<naga::Module, ReflectError> {
 }
 
 /// Validates a module; also tells which features it needs.
-pub(super) fn validate(module: &naga::Module, joined: &JoinedText) -> Result<(ModuleInfo, Vec<Feature>), ReflectError> {
-    let run = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module);
+pub(super) fn validate(module: &naga::Module, places: &Places<'_>) -> Result<(ModuleInfo, Vec<Feature>), ReflectError> {
+    let run = |capabilities| Validator::new(ValidationFlags::all(), capabilities).validate(module).map_err(Box::new);
     // Most shaders need no feature.
     if let Ok(info) = run(CORE) {
         return Ok((info, Vec::new()));
     }
     let all = OPTIONAL.iter().fold(CORE, |all, (_, capabilities)| all | *capabilities);
-    let info = run(all).map_err(|error| invalid(&error, module, joined))?;
+    let info = run(all).map_err(|error| invalid(&error, places))?;
     // A feature is needed if the module is invalid without it.
     let needed = OPTIONAL.iter().filter(|(_, capabilities)| run(all.difference(*capabilities)).is_err()).map(|(feature, _)| *feature);
     Ok((info, needed.collect()))
 }
 
 /// Turns a validation error and its chain of causes into one problem.
-fn invalid(error: &naga::WithSpan<ValidationError>, module: &naga::Module, joined: &JoinedText) -> ReflectError {
+fn invalid(error: &naga::WithSpan<ValidationError>, names: &Places<'_>) -> ReflectError {
     let mut causes: Vec<String> = Vec::new();
     let mut cause = error.as_inner().source();
     while let Some(next) = cause {
@@ -66,13 +68,21 @@ fn invalid(error: &naga::WithSpan<ValidationError>, module: &naga::Module, joine
         Some(root) => format!("{what}: {root}"),
         None => what,
     };
-    let mut places: Vec<Place> =
-        error.spans().filter_map(|(span, text)| Some((joined.locate_naga(*span)?, describe(text).to_owned()))).collect();
-    if places.is_empty()
-        && let ValidationError::Function { handle, .. } = error.as_inner()
-    {
-        places.extend(joined.locate_naga(module.functions.get_span(*handle)).map(|span| (span, "this function".to_owned())));
+    let mut places: Vec<Place> = error
+        .spans()
+        .map(|(span, text)| (names.naga_span(*span), describe(text).to_owned()))
+        .filter(|place| place.0.is_somewhere())
+        .collect();
+    if places.is_empty() {
+        let item = match error.as_inner() {
+            ValidationError::Function { name, .. } | ValidationError::EntryPoint { name, .. } => names.function_span(name),
+            ValidationError::GlobalVariable { name, .. } => names.value_span(name),
+            _ => Span::NOWHERE,
+        };
+        places.extend(item.is_somewhere().then(|| (item, "here".to_owned())));
     }
+    // The narrowest place says most.
+    places.sort_by_key(|(span, _)| span.end.saturating_sub(span.start));
     causes.pop();
     ReflectError::Invalid { message, places, notes: causes }
 }
