@@ -17,8 +17,7 @@ use crate::schedule::part::Rect;
 pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocation: Allocation, name: &str, extent: [u32; 2]) -> Plan {
     let Bound { expanded, mut shaders, steps, formats, mut views, mut draw_lists, mut requirements } = bound;
     let mut bound_steps: Vec<Option<Step>> = steps.into_iter().map(Some).collect();
-    let mut steps: Vec<Step> =
-        schedule.order.iter().filter_map(|pass| bound_steps.get_mut(pass.index()).and_then(Option::take)).collect();
+    let mut steps: Vec<Step> = schedule.order.iter().filter_map(|pass| bound_steps.get_mut(pass.index()).and_then(Option::take)).collect();
     let mut place_of: Vec<Option<usize>> = vec![None; bound_steps.len()];
     for (place, pass) in schedule.order.iter().enumerate() {
         place_of[pass.index()] = Some(place);

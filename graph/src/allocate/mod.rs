@@ -22,7 +22,7 @@ use crate::expand::types::{Dimension, PassId, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Usage};
 use crate::schedule::Schedule;
-use extent::{ARENA_ALIGNMENT, format_of, resource_bytes, round_up};
+use extent::{format_of, resource_bytes};
 use model::Model;
 
 /// Where everything lives. All lists but `memories` are by resource id.
@@ -67,14 +67,7 @@ pub(crate) fn bytes_reached(model: &Model, ranges: &[Range<usize>]) -> u64 {
     arenas.iter().fold(textures::texture_bytes_reached(model, ranges), |sum, arena| sum.saturating_add(arena.bytes()))
 }
 
-fn place(
-    bound: &Bound,
-    schedule: &Schedule,
-    lifetimes: &Lifetimes,
-    model: &Model,
-    usages: Vec<Usage>,
-    device: &DeviceFacts,
-) -> Allocation {
+fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, model: &Model, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
     let resources = &bound.expanded.resources;
     let ranges = &lifetimes.ranges;
     let texture_kind = |index: usize| match (&resources[index].shape, format_of(bound, ResourceId(index as u32))) {
@@ -166,17 +159,10 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
 fn clear_usage(bound: &Bound, resource: ResourceId) -> Usage {
     let shape = bound.expanded.resources.get(resource.index()).map(|resource| &resource.shape);
     let attachment = match (shape, format_of(bound, resource)) {
-        (Some(Shape::Texture(shape)), Some(format)) => {
-            shape.dimension != Dimension::D1 && (format.is_depth() || format.info().renderable)
-        }
+        (Some(Shape::Texture(shape)), Some(format)) => shape.dimension != Dimension::D1 && (format.is_depth() || format.info().renderable),
         _ => false,
     };
     Usage { attachment, copy_target: !attachment, ..Usage::default() }
-}
-
-/// What a memory counts for in the figures.
-pub(crate) fn charged(kind: &MemoryKind, bytes: u64) -> u64 {
-    if *kind == MemoryKind::Arena { round_up(bytes, ARENA_ALIGNMENT).unwrap_or(u64::MAX) } else { bytes }
 }
 
 /// When each transient is in use in an order.

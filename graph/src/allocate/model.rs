@@ -123,12 +123,8 @@ impl Tracked {
 
 fn enter_conflicts(step: &Step, pools: &[Pool], conflicts: &mut BTreeMap<u32, Vec<u32>>) {
     let is_buffer = |resource: ResourceId| pools.get(resource.index()) == Some(&Pool::Buffer);
-    let buffers: Vec<(Tracked, u32)> = step
-        .uses
-        .iter()
-        .filter(|used| is_buffer(used.resource))
-        .map(|used| (Tracked::of(used.access), used.resource.0))
-        .collect();
+    let buffers: Vec<(Tracked, u32)> =
+        step.uses.iter().filter(|used| is_buffer(used.resource)).map(|used| (Tracked::of(used.access), used.resource.0)).collect();
     for (tracked, buffer) in &buffers {
         for (other_tracked, other) in &buffers {
             if tracked != other_tracked && buffer != other {

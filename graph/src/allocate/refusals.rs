@@ -9,12 +9,7 @@ use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryKind, Placement};
 
 /// By resource id; `None` where bytes are shared, or not in use at all.
-pub(crate) fn refusals(
-    model: &Model,
-    lifetimes: &Lifetimes,
-    memories: &[Memory],
-    placements: &[Option<Placement>],
-) -> Vec<Option<Alone>> {
+pub(crate) fn refusals(model: &Model, lifetimes: &Lifetimes, memories: &[Memory], placements: &[Option<Placement>]) -> Vec<Option<Alone>> {
     let ranges = &lifetimes.ranges;
     let peaks = peaks(model, ranges);
     let mut of_descriptor = vec![0usize; model.descriptors.len()];

@@ -4,8 +4,8 @@
 //! new one. For intervals that is the least possible number of textures: as many as are in use at once at the worst step. Among
 //! free textures it takes the one whose usages grow least, since needless usages cost compression, then the last freed.
 
-use std::collections::{BTreeMap, BinaryHeap};
 use std::cmp::Reverse;
+use std::collections::{BTreeMap, BinaryHeap};
 use std::ops::Range;
 
 use super::model::{Model, Pool};

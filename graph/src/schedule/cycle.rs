@@ -101,8 +101,7 @@ fn report(bound: &Bound, links: &[Link], component: &[NodeIndex], dag: &Dag) -> 
     };
     let mut diagnostic = Diagnostic::error(code, message);
     for (index, link) in links.iter().enumerate() {
-        diagnostic =
-            if index == 0 { diagnostic.at(link.2.span, sentence(link)) } else { diagnostic.and(link.2.span, sentence(link)) };
+        diagnostic = if index == 0 { diagnostic.at(link.2.span, sentence(link)) } else { diagnostic.and(link.2.span, sentence(link)) };
         diagnostic = diagnostic.note(sentence(link));
     }
     let passes = component.iter().filter(|node| pass_of(dag, **node).is_some()).count();

@@ -16,9 +16,6 @@ pub(crate) mod part;
 mod problems;
 mod versions;
 
-
-
-
 use crate::allocate::model::Model;
 use crate::bind::types::Bound;
 use crate::diagnostic::{Diagnostic, has_errors};
@@ -51,6 +48,10 @@ pub fn schedule(bound: &Bound) -> (Option<Schedule>, Vec<Diagnostic>) {
         return (None, found);
     }
     let alive = cull::alive(&dag, &grids);
+    if !alive.contains(&true) && !bound.expanded.outputs.is_empty() {
+        found.extend(problems::nothing_runs(bound));
+        return (None, found);
+    }
     let model = Model::new(bound, |pass| alive[pass]);
     let orders = order::orders(&dag, &alive, &model);
     let culled = cull::culled(bound, &dag, &alive);
