@@ -11,6 +11,7 @@ mod clears;
 mod cull;
 mod cycle;
 mod dag;
+mod greedy;
 mod order;
 pub(crate) mod part;
 mod problems;
