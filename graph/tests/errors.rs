@@ -1,5 +1,6 @@
 //! Documents that are wrong, each with the message that its author sees beside it.
 
+#[path = "support/fixture_files.rs"]
 mod support;
 
 use luminaire_graph::diagnostic::render;

@@ -15,7 +15,7 @@ use super::strip::{Fit, Strip};
 pub(crate) const ARENA_LIMIT: u64 = 256 << 20;
 
 /// One buffer with what lives in it.
-#[derive(Debug, Default)]
+#[derive(Debug)]
 pub(crate) struct Arena {
     /// Resources with their offsets, by descending size.
     pub(crate) holders: Vec<(u32, u64)>,
@@ -35,6 +35,7 @@ pub(crate) fn pack(model: &Model, ranges: &[Range<usize>], limit: u64) -> Vec<Ar
         .filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty())
         .collect();
     buffers.sort_by_key(|index| (std::cmp::Reverse(model.charged[*index]), ranges[*index].start, *index));
+    let steps = buffers.iter().map(|index| ranges[*index].end).max().unwrap_or(0);
     let mut arenas: Vec<Arena> = Vec::new();
     let mut home: Vec<Option<usize>> = vec![None; if model.conflicts.is_empty() { 0 } else { ranges.len() }];
     let mut forbidden: Vec<usize> = Vec::new();
@@ -57,7 +58,7 @@ pub(crate) fn pack(model: &Model, ranges: &[Range<usize>], limit: u64) -> Vec<Ar
         }
         let (number, offset) = best.map_or((arenas.len(), 0), |(number, fit)| (number, fit.offset));
         if number == arenas.len() {
-            arenas.push(Arena::default());
+            arenas.push(Arena { holders: Vec::new(), strip: Strip::new(steps) });
         }
         arenas[number].strip.insert(&ranges[index], offset, bytes);
         arenas[number].holders.push((index as u32, offset));

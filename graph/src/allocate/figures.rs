@@ -41,7 +41,7 @@ pub(crate) fn peak(model: &Model, ranges: &[Range<usize>]) -> u64 {
 pub(crate) fn placed(model: &Model, ranges: &[Range<usize>]) -> u64 {
     let mut order: Vec<usize> = transients(model, ranges).collect();
     order.sort_unstable_by_key(|index| (Reverse(model.charged[*index]), Reverse(ranges[*index].len()), ranges[*index].start, *index));
-    let mut strip = Strip::default();
+    let mut strip = Strip::new(order.iter().map(|index| ranges[*index].end).max().unwrap_or(0));
     for index in order {
         let bytes = round_up(model.charged[index], PLACED_ALIGNMENT).unwrap_or(u64::MAX);
         let fit = strip.fit(&ranges[index], bytes);

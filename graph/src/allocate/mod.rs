@@ -22,7 +22,7 @@ use crate::expand::types::{Dimension, PassId, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Usage};
 use crate::schedule::Schedule;
-use extent::{ARENA_ALIGNMENT, format_of, resource_bytes, round_up};
+use extent::{format_of, resource_bytes};
 use model::Model;
 
 /// Where everything lives. All lists but `memories` are by resource id.
@@ -163,11 +163,6 @@ fn clear_usage(bound: &Bound, resource: ResourceId) -> Usage {
         _ => false,
     };
     Usage { attachment, copy_target: !attachment, ..Usage::default() }
-}
-
-/// What a memory counts for in the figures.
-pub(crate) fn charged(kind: &MemoryKind, bytes: u64) -> u64 {
-    if *kind == MemoryKind::Arena { round_up(bytes, ARENA_ALIGNMENT).unwrap_or(u64::MAX) } else { bytes }
 }
 
 /// When each transient is in use in an order.

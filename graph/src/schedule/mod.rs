@@ -11,6 +11,7 @@ mod clears;
 mod cull;
 mod cycle;
 mod dag;
+mod greedy;
 mod order;
 pub(crate) mod part;
 mod problems;
@@ -48,6 +49,10 @@ pub fn schedule(bound: &Bound) -> (Option<Schedule>, Vec<Diagnostic>) {
         return (None, found);
     }
     let alive = cull::alive(&dag, &grids);
+    if !alive.contains(&true) && !bound.expanded.outputs.is_empty() {
+        found.extend(problems::nothing_runs(bound));
+        return (None, found);
+    }
     let model = Model::new(bound, |pass| alive[pass]);
     let orders = order::orders(&dag, &alive, &model);
     let culled = cull::culled(bound, &dag, &alive);

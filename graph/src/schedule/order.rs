@@ -1,9 +1,10 @@
 //! In which order passes run.
 //!
-//! The declared order takes, of all passes that are ready, the one that stands first in the file. Besides it three cheap orders
-//! are tried: ready passes by how little they add to the bytes in use, the same from the end of the frame backwards, and depth
-//! first from the outputs. The one with the fewest bytes that an executor would really allocate wins; on a tie the declared
-//! order does, so the chosen order is never worse than it. Finding the best order is NP-hard, so none of them promises that.
+//! The declared order takes, of all passes that are ready, the one that stands first in the file. Besides it other orders are
+//! tried: depth first from the outputs, and ready passes by what they add to memory ([`super::greedy`]), with several weights,
+//! forwards and from the end of the frame backwards. The one with the fewest bytes that an executor would really allocate wins;
+//! on a tie the declared order does, so the chosen order is never worse than it. Small graphs get more tries than large ones.
+//! Finding the best order is NP-hard, so none of this promises it.
 
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
@@ -11,6 +12,7 @@ use std::collections::BinaryHeap;
 use petgraph::visit::EdgeRef;
 
 use super::dag::{Dag, Node};
+use super::greedy::{Greedy, Users, Weights};
 use crate::allocate::model::Model;
 use crate::allocate::{bytes_reached, ranges_in};
 use crate::expand::types::PassId;
@@ -21,17 +23,31 @@ pub(crate) struct Orders {
     pub(crate) declared: Vec<PassId>,
 }
 
+/// Weights of new textures and of bytes in use, the most useful first.
+const WEIGHTS: &[(i64, i64)] = &[(1, 1), (0, 1), (4, 1), (1, 0), (1, 4), (2, 1), (1, 2), (16, 1)];
+/// Passes times tries.
+const EFFORT: usize = 40_000;
+/// Also for the largest graphs.
+const FEWEST_TRIES: usize = 4;
+
 /// Orders the live passes. The graph has no cycle.
 pub(crate) fn orders(dag: &Dag, alive: &[bool], model: &Model) -> Orders {
     let live = Live::new(dag, alive);
     let declared = live.by_place();
     let reached = |order: &[PassId]| bytes_reached(model, &ranges_in(model, order));
     let mut best = (reached(&declared), declared.clone());
-    for candidate in [live.by_bytes(model, false), live.by_bytes(model, true), live.depth_first()] {
+    let mut consider = |candidate: Vec<PassId>| {
         let bytes = reached(&candidate);
         if bytes < best.0 && candidate.len() == declared.len() {
             best = (bytes, candidate);
         }
+    };
+    consider(live.depth_first());
+    let users = Users::new(model, live.passes());
+    let tries = (EFFORT / live.nodes.len().max(1)).clamp(FEWEST_TRIES, WEIGHTS.len() * 2);
+    let directions = WEIGHTS.iter().flat_map(|weights| [(weights, false), (weights, true)]);
+    for ((fresh, growth), backwards) in directions.take(tries) {
+        consider(live.by_memory(model, &users, Weights { fresh: *fresh, growth: *growth, backwards }));
     }
     Orders { chosen: best.1, declared }
 }
@@ -132,10 +148,14 @@ impl<'a> Live<'a> {
         self.run(false, &mut queue, |queue, pass| queue.push(Reverse(pass)), |queue| queue.pop().map(|Reverse(pass)| pass))
     }
 
-    /// The ready pass that adds the fewest bytes to those in use; ties by place in the file.
-    fn by_bytes(&self, model: &Model, backwards: bool) -> Vec<PassId> {
-        let mut state = InUse::new(model, self, backwards);
-        self.run(backwards, &mut state, InUse::ready, InUse::next)
+    /// The ready pass that costs least; ties by place in the file.
+    fn by_memory(&self, model: &Model, users: &Users, weights: Weights) -> Vec<PassId> {
+        let mut state = Greedy::new(model, users, weights);
+        self.run(weights.backwards, &mut state, Greedy::ready, Greedy::next)
+    }
+
+    fn passes(&self) -> impl Iterator<Item = PassId> + Clone {
+        self.nodes.iter().filter_map(|node| self.pass(*node))
     }
 
     /// Every pass right after what it needs, results in the order of the file.
@@ -171,86 +191,5 @@ fn release(node: u32, frees: &Neighbours, waits: &mut [u32], open: &mut Vec<u32>
         if *waiting == 0 {
             open.push(*later);
         }
-    }
-}
-
-/// Which resources are in use while passes are chosen, and what each ready pass would add. Scores change only when a resource
-/// comes into use or has one user left, so all updates together are linear in uses.
-struct InUse<'a> {
-    model: &'a Model,
-    users: Vec<Vec<u32>>,
-    left: Vec<u32>,
-    in_use: Vec<bool>,
-    /// By pass: the score of a ready pass.
-    scores: Vec<Option<i64>>,
-    queue: BinaryHeap<Reverse<(i64, i64, u32)>>,
-    backwards: bool,
-}
-
-impl<'a> InUse<'a> {
-    fn new(model: &'a Model, live: &Live<'_>, backwards: bool) -> InUse<'a> {
-        let resources = model.touches.resource_count();
-        let mut users: Vec<Vec<u32>> = vec![Vec::new(); resources];
-        let mut passes = 0;
-        for pass in live.nodes.iter().filter_map(|node| live.pass(*node)) {
-            passes = passes.max(pass.index() + 1);
-            for resource in model.touches.of(pass) {
-                users[*resource as usize].push(pass.0);
-            }
-        }
-        let left = users.iter().map(|users| users.len() as u32).collect();
-        let in_use = vec![false; resources];
-        InUse { model, users, left, in_use, scores: vec![None; passes], queue: BinaryHeap::new(), backwards }
-    }
-
-    fn score(&self, pass: PassId) -> i64 {
-        let mut sum = 0i64;
-        for resource in self.model.touches.of(pass).iter().map(|resource| *resource as usize) {
-            if !self.model.is_transient(resource) {
-                continue;
-            }
-            let bytes = i64::try_from(self.model.charged[resource]).unwrap_or(i64::MAX);
-            if !self.in_use[resource] {
-                sum = sum.saturating_add(bytes);
-            }
-            if self.left[resource] == 1 {
-                sum = sum.saturating_sub(bytes);
-            }
-        }
-        sum
-    }
-
-    fn ready(&mut self, pass: PassId) {
-        let score = self.score(pass);
-        if self.scores[pass.index()] != Some(score) {
-            self.scores[pass.index()] = Some(score);
-            let place = i64::from(pass.0);
-            self.queue.push(Reverse((score, if self.backwards { -place } else { place }, pass.0)));
-        }
-    }
-
-    fn next(&mut self) -> Option<PassId> {
-        let pass = loop {
-            let Reverse((score, _, pass)) = self.queue.pop()?;
-            if self.scores[pass as usize] == Some(score) {
-                break PassId(pass);
-            }
-        };
-        self.scores[pass.index()] = None;
-        let model = self.model;
-        for resource in model.touches.of(pass).iter().map(|resource| *resource as usize) {
-            let began = !std::mem::replace(&mut self.in_use[resource], true);
-            self.left[resource] -= 1;
-            if began || self.left[resource] == 1 {
-                let users = std::mem::take(&mut self.users[resource]);
-                for user in &users {
-                    if self.scores[*user as usize].is_some() {
-                        self.ready(PassId(*user));
-                    }
-                }
-                self.users[resource] = users;
-            }
-        }
-        Some(pass)
     }
 }

@@ -6,7 +6,7 @@ use super::part::{self, Rect};
 use super::versions::{Grid, Region, UseRef, only_tests, writes};
 use crate::bind::types::Bound;
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
-use crate::expand::types::{PassId, Resource};
+use crate::expand::types::{Output, PassId, Resource};
 use crate::plan::{Access, Role, Step};
 
 /// All of them but cycles, by resource and then by pass.
@@ -140,8 +140,7 @@ fn wrong_versions(bound: &Bound, grid: &Grid, region: &Region, resource: &Resour
 
 fn outputs(bound: &Bound, grid: &Grid, region: &Region, resource: &Resource, found: &mut Vec<Diagnostic>) {
     for output in region.outputs.iter().map(|index| &bound.expanded.outputs[*index]) {
-        // Where no step runs at all there is none that could fill it with the declared value.
-        if !region.unwritten.is_empty() && (resource.clear.is_none() || bound.steps.is_empty()) {
+        if !region.unwritten.is_empty() && resource.clear.is_none() {
             let rects = region.unwritten.iter().map(|cell| grid.cells[*cell].rect.clone()).collect();
             found.push(
                 Diagnostic::error(
@@ -149,7 +148,7 @@ fn outputs(bound: &Bound, grid: &Grid, region: &Region, resource: &Resource, fou
                     format!("output `{}` is {}, which nothing produces", output.name, part::names(rects, resource)),
                 )
                 .at(output.part.span, "no pass that stands writes it")
-                .and(resource.span, if resource.clear.is_none() { "it declares no `clear` value" } else { "declared here" })
+                .and(resource.span, "it declares no `clear` value")
                 .hint("add a pass that writes it, or take the output away"),
             );
         }
@@ -166,6 +165,22 @@ fn outputs(bound: &Bound, grid: &Grid, region: &Region, resource: &Resource, fou
             );
         }
     }
+}
+
+/// Outputs that are nothing but declared values, where no pass runs that could fill them.
+pub(crate) fn nothing_runs(bound: &Bound) -> Vec<Diagnostic> {
+    let outputs = bound.expanded.outputs.iter();
+    let report = |output: &Output| {
+        let resource = &bound.expanded.resources[output.part.resource.index()];
+        Diagnostic::error(
+            "schedule::nothing-runs",
+            format!("output `{}` is the declared value of `{}`, and no pass runs to fill it", output.name, resource.name),
+        )
+        .at(output.part.span, "nothing produces it")
+        .and(resource.span, "declared here")
+        .hint("ask for an output that a pass makes, too, or set the value with a Clear pass")
+    };
+    outputs.map(report).collect()
 }
 
 fn reads_what_it_writes(bound: &Bound, step: &Step, found: &mut Vec<Diagnostic>) {

@@ -55,9 +55,17 @@ pub(crate) struct Region {
     pub(crate) foreign: Vec<usize>,
 }
 
+impl Region {
+    fn new(rect: Rect, version: Option<PassId>) -> Region {
+        let (readers, outputs, writers, destroyers, unwritten, foreign) = Default::default();
+        Region { rect, version, readers, outputs, writers, destroyers, unwritten, foreign }
+    }
+}
+
 /// The cells and regions of a resource.
 #[derive(Debug, Default)]
 pub(crate) struct Grid {
+    /// Empty where the resource is one cell, as most are.
     mip_cuts: Vec<u32>,
     layer_cuts: Vec<u32>,
     pub(crate) cells: Vec<Cell>,
@@ -71,14 +79,19 @@ pub(crate) struct Grid {
 impl Grid {
     /// The cells of a rectangle, by index.
     pub(crate) fn cells_in(&self, rect: &Rect) -> impl Iterator<Item = usize> + use<> {
+        let one = usize::from(self.mip_cuts.is_empty() && !self.cells.is_empty());
         let at = |cuts: &[u32], value: u32| cuts.binary_search(&value).unwrap_or_else(|place| place);
         let columns = self.layer_cuts.len().saturating_sub(1);
         let rows = at(&self.mip_cuts, rect.mips.0)..at(&self.mip_cuts, rect.mips.1).min(self.mip_cuts.len().saturating_sub(1));
         let (first, end) = (at(&self.layer_cuts, rect.layers.0), at(&self.layer_cuts, rect.layers.1).min(columns));
-        rows.flat_map(move |row| (first..end).map(move |column| row * columns + column))
+        (0..one).chain(rows.flat_map(move |row| (first..end).map(move |column| row * columns + column)))
     }
 
-    fn cut(whole: &Rect, rects: impl Iterator<Item = Rect>) -> Grid {
+    fn cut(whole: &Rect, rects: impl Iterator<Item = Rect> + Clone) -> Grid {
+        if rects.clone().all(|rect| rect == *whole) {
+            let cell = Cell { rect: whole.clone(), writers: Vec::new(), produced: false };
+            return Grid { cells: vec![cell], ..Grid::default() };
+        }
         let mut mip_cuts = vec![whole.mips.0, whole.mips.1];
         let mut layer_cuts = vec![whole.layers.0, whole.layers.1];
         for rect in rects.filter(|rect| rect != whole) {
@@ -161,22 +174,34 @@ pub(crate) fn only_tests(touched: &Use) -> bool {
 /// The grids of all resources, by id.
 pub(crate) fn versions(bound: &Bound) -> Vec<Grid> {
     let count = bound.expanded.resources.len();
-    let mut uses: Vec<Vec<UseRef>> = vec![Vec::new(); count];
+    let named = |used: &Use| used.resource.index() < count;
+    // All uses in one list, grouped by resource: `ends` first counts them, then says where each group ends.
+    let mut ends = vec![0usize; count + 1];
+    for used in bound.steps.iter().flat_map(|step| &step.uses).filter(|used| named(used)) {
+        ends[used.resource.index() + 1] += 1;
+    }
+    for index in 0..count {
+        ends[index + 1] += ends[index];
+    }
+    let mut uses = vec![UseRef { pass: PassId(0), index: 0 }; ends[count]];
     for (pass, step) in bound.steps.iter().enumerate() {
-        for (index, touched) in step.uses.iter().enumerate() {
-            if let Some(list) = uses.get_mut(touched.resource.index()) {
-                list.push(UseRef { pass: PassId(pass as u32), index: index as u32 });
-            }
+        for (index, used) in step.uses.iter().enumerate().filter(|(_, used)| named(used)) {
+            let place = &mut ends[used.resource.index()];
+            uses[*place] = UseRef { pass: PassId(pass as u32), index: index as u32 };
+            *place += 1;
         }
     }
+    let group = |index: usize| &uses[index.checked_sub(1).map_or(0, |before| ends[before])..ends[index]];
     let mut outputs: Vec<Vec<usize>> = vec![Vec::new(); count];
     for (index, output) in bound.expanded.outputs.iter().enumerate() {
         if let Some(list) = outputs.get_mut(output.part.resource.index()) {
             list.push(index);
         }
     }
-    (0..count).map(|index| grid(bound, ResourceId(index as u32), &uses[index], &outputs[index])).collect()
+    (0..count).map(|index| grid(bound, ResourceId(index as u32), group(index), &outputs[index])).collect()
 }
+
+const FEW: usize = 8;
 
 fn grid(bound: &Bound, resource: ResourceId, uses: &[UseRef], outputs: &[usize]) -> Grid {
     let shape = &bound.expanded.resources[resource.index()].shape;
@@ -195,23 +220,16 @@ fn grid(bound: &Bound, resource: ResourceId, uses: &[UseRef], outputs: &[usize])
     let mut regions: Vec<Region> = Vec::new();
     let mut known: BTreeMap<(Rect, Option<PassId>), usize> = BTreeMap::new();
     let mut region_of = |regions: &mut Vec<Region>, rect: Rect, version: Option<PassId>| {
-        if let Some(last) = regions.last()
-            && last.rect == rect
-            && last.version == version
-        {
+        // Few regions are the rule; a map pays only for many.
+        if let Some(found) = regions.iter().take(FEW).position(|region| region.rect == rect && region.version == version) {
+            return found;
+        }
+        if regions.len() < FEW {
+            regions.push(Region::new(rect, version));
             return regions.len() - 1;
         }
         *known.entry((rect.clone(), version)).or_insert_with(|| {
-            regions.push(Region {
-                rect,
-                version,
-                readers: Vec::new(),
-                outputs: Vec::new(),
-                writers: Vec::new(),
-                destroyers: Vec::new(),
-                unwritten: Vec::new(),
-                foreign: Vec::new(),
-            });
+            regions.push(Region::new(rect, version));
             regions.len() - 1
         })
     };
