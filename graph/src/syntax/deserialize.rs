@@ -8,11 +8,12 @@ use serde::de::{Deserializer, Error, Visitor};
 
 use crate::diagnostic::nearest;
 
-use super::access::{ContentAccess, NameDeserializer, PairAccess, RangeAccess, SequenceAccess, VariantAccess};
+use super::access::{NameDeserializer, PairAccess, RangeAccess, SequenceAccess};
 use super::fault::{Fault, ReadError};
 use super::recover::Context;
 use super::spanned::{SPANNED_NAME, visit_spanned};
 use super::tree::{FloatType, Integer, IntegerType, Name, Node, Range, Value};
+use super::variant::{ContentAccess, VariantAccess};
 
 /// How often a type may ask again for the same value, as `Option` and newtypes do.
 const MAX_WRAPS: u8 = 64;

@@ -2,9 +2,10 @@
 
 use std::collections::HashMap;
 use std::collections::hash_map::Entry as Slot;
+use std::hash::{Hash, Hasher};
 
 use super::error::{Problems, SyntaxError};
-use super::tree::{Entry, Field, Key};
+use super::tree::{Entry, Field, Name, Node, Value};
 
 /// Reports every key that equals an earlier one of its map.
 pub(super) fn report_duplicate_keys(entries: &[Entry], problems: &mut Problems) {
@@ -18,9 +19,17 @@ pub(super) fn report_duplicate_keys(entries: &[Entry], problems: &mut Problems) 
                 slot.insert(entry.key.span);
             }
             Slot::Occupied(slot) => {
-                problems.report(entry.key.span, &SyntaxError::DuplicateKey { key: entry.key.describe(), first: *slot.get() });
+                let error = SyntaxError::DuplicateKey { key: describe_key(&entry.key), first: *slot.get() };
+                problems.report(entry.key.span, &error);
             }
         }
+    }
+}
+
+fn describe_key(key: &Node) -> String {
+    match &key.value {
+        Value::Str(text) => format!("{text:?}"),
+        _ => key.describe(),
     }
 }
 
@@ -47,6 +56,81 @@ pub(super) fn report_duplicate_fields(fields: &[Field], problems: &mut Problems)
                 slot.insert(field);
             }
             Slot::Occupied(slot) => report(field, slot.get()),
+        }
+    }
+}
+
+/// A node compared and hashed as a map key: by value, places left out, numbers without the way in which they were written.
+#[derive(Debug, Clone, Copy)]
+struct Key<'a>(&'a Node);
+
+impl PartialEq for Key<'_> {
+    fn eq(&self, other: &Self) -> bool {
+        let names = |a: &Option<Name>, b: &Option<Name>| a.as_ref().map(|name| &name.text) == b.as_ref().map(|name| &name.text);
+        let nodes = |a: &[Node], b: &[Node]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Key(a) == Key(b));
+        match (&self.0.value, &other.0.value) {
+            (Value::Unit, Value::Unit) => true,
+            (Value::Bool(a), Value::Bool(b)) => a == b,
+            (Value::Integer(a), Value::Integer(b)) => a.value() == b.value(),
+            (Value::Float(a), Value::Float(b)) => a.value.to_bits() == b.value.to_bits(),
+            (Value::Char(a), Value::Char(b)) => a == b,
+            (Value::Str(a), Value::Str(b)) => a == b,
+            (Value::Bytes(a), Value::Bytes(b)) => a == b,
+            (Value::List(a), Value::List(b)) => nodes(a, b),
+            (Value::Map(a), Value::Map(b)) => {
+                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Key(&a.key) == Key(&b.key) && Key(&a.value) == Key(&b.value))
+            }
+            (Value::Word(a), Value::Word(b)) => a.text == b.text,
+            (Value::Tuple { name: a, items: x }, Value::Tuple { name: b, items: y }) => names(a, b) && nodes(x, y),
+            (Value::Struct { name: a, fields: x }, Value::Struct { name: b, fields: y }) => {
+                names(a, b)
+                    && x.len() == y.len()
+                    && x.iter().zip(y).all(|(x, y)| x.name.text == y.name.text && Key(&x.value) == Key(&y.value))
+            }
+            (Value::Range(a), Value::Range(b)) => {
+                a.inclusive == b.inclusive
+                    && a.start.as_ref().map(Key) == b.start.as_ref().map(Key)
+                    && a.end.as_ref().map(Key) == b.end.as_ref().map(Key)
+            }
+            _ => false,
+        }
+    }
+}
+
+impl Eq for Key<'_> {}
+
+impl Hash for Key<'_> {
+    fn hash<H: Hasher>(&self, state: &mut H) {
+        std::mem::discriminant(&self.0.value).hash(state);
+        match &self.0.value {
+            Value::Unit => {}
+            Value::Bool(value) => value.hash(state),
+            Value::Integer(integer) => integer.value().hash(state),
+            Value::Float(float) => float.value.to_bits().hash(state),
+            Value::Char(char) => char.hash(state),
+            Value::Str(text) => text.hash(state),
+            Value::Bytes(bytes) => bytes.hash(state),
+            Value::List(items) => items.iter().for_each(|item| Key(item).hash(state)),
+            Value::Map(entries) => entries.iter().for_each(|entry| {
+                Key(&entry.key).hash(state);
+                Key(&entry.value).hash(state);
+            }),
+            Value::Word(name) => name.text.hash(state),
+            Value::Tuple { name, items } => {
+                name.as_ref().map(|name| &name.text).hash(state);
+                items.iter().for_each(|item| Key(item).hash(state));
+            }
+            Value::Struct { name, fields } => {
+                name.as_ref().map(|name| &name.text).hash(state);
+                fields.iter().for_each(|field| {
+                    field.name.text.hash(state);
+                    Key(&field.value).hash(state);
+                });
+            }
+            Value::Range(range) => {
+                range.start.as_ref().map(Key).hash(state);
+                range.end.as_ref().map(Key).hash(state);
+            }
         }
     }
 }

@@ -20,7 +20,7 @@ pub enum SyntaxError {
     TooLarge { bytes: usize },
     #[error("more than {MAX_PROBLEMS} problems: the rest of the text was not read")]
     TooMany,
-    #[error("unexpected character {0:?}")]
+    #[error("unexpected character `{}`", .0.escape_debug())]
     UnexpectedCharacter(char),
     #[error("the file starts with a byte order mark")]
     ByteOrderMark,

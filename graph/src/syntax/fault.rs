@@ -106,13 +106,6 @@ impl ReadError {
         self
     }
 
-    pub(super) fn hint(mut self, hint: Option<String>) -> ReadError {
-        if self.0.hint.is_none() {
-            self.0.hint = hint;
-        }
-        self
-    }
-
     /// Sets the field or entry that a retry leaves out, unless an inner layer has.
     pub(super) fn within(mut self, unit: Unit) -> ReadError {
         self.0.unit.get_or_insert(unit);

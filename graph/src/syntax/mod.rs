@@ -39,6 +39,8 @@ mod literal;
 mod number;
 mod parse;
 mod recover;
+mod sequence;
+mod variant;
 
 pub use parse::parse;
 pub use recover::{deserialize_document, from_tree};
