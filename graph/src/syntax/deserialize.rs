@@ -9,7 +9,7 @@ use serde::de::{Deserializer, Error, Visitor};
 use crate::diagnostic::nearest;
 
 use super::access::{NameDeserializer, PairAccess, RangeAccess, SequenceAccess};
-use super::fault::{Fault, ReadError};
+use super::fault::{Fault, ReadError, values};
 use super::recover::Context;
 use super::spanned::{SPANNED_NAME, visit_spanned};
 use super::tree::{FloatType, Integer, IntegerType, Name, Node, Range, Value};
@@ -45,6 +45,11 @@ impl<'de, 'c> NodeDeserializer<'de, 'c> {
             return Err(ReadError::new(Fault::EndlessType).at_node(self.node));
         }
         Ok(NodeDeserializer { wraps: self.wraps + 1, ..self })
+    }
+
+    /// Whether the value is, or starts with, a keyword.
+    fn is_keyword(self, keyword: &str) -> bool {
+        !self.name_taken && self.node.name().is_some_and(|name| !name.raw && *name.text == *keyword)
     }
 
     /// Runs a visitor; its own errors get the place of this node.
@@ -85,8 +90,8 @@ impl<'de, 'c> NodeDeserializer<'de, 'c> {
             match access.left() {
                 0 => Ok(value),
                 left => Err(ReadError::new(Fault::WrongLength {
-                    expected: format!("{} values", items.len().saturating_sub(left)),
-                    found: format!("{} values", items.len()),
+                    expected: values(items.len().saturating_sub(left)),
+                    found: values(items.len()),
                 })),
             }
         })
@@ -157,11 +162,6 @@ fn number_hint(node: &Node) -> Option<String> {
     }
 }
 
-/// Whether a name is the keyword.
-pub(super) fn is_keyword(name: &Name, keyword: &str) -> bool {
-    !name.raw && *name.text == *keyword
-}
-
 macro_rules! integers {
     ($($method:ident $visit:ident $wanted:ident $type:ty)*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
@@ -192,14 +192,10 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
             Value::Bytes(bytes) => self.visit(|| visitor.visit_borrowed_bytes(bytes)),
             Value::List(_) => self.deserialize_seq(visitor),
             Value::Map(_) => self.deserialize_map(visitor),
-            Value::Word(name) | Value::Tuple { name: Some(name), .. } | Value::Struct { name: Some(name), .. }
-                if is_keyword(name, "Some") || is_keyword(name, "None") =>
-            {
-                self.deserialize_option(visitor)
-            }
+            _ if self.is_keyword("Some") || self.is_keyword("None") => self.deserialize_option(visitor),
             Value::Word(name) if buffers_for_serde::<V::Value>() => self.visit(|| visitor.visit_borrowed_str(&name.text)),
             Value::Word(_) => self.visit(|| visitor.visit_unit()),
-            Value::Tuple { name, .. } | Value::Struct { name, .. } => self.any_content(name.as_ref(), visitor),
+            Value::Tuple { name, .. } | Value::Struct { name, .. } => self.any_content(name.as_deref(), visitor),
             Value::Range(range) if range.start.is_none() && range.end.is_none() => self.visit(|| visitor.visit_unit()),
             Value::Range(range) => self.range(range, visitor),
         }
@@ -302,17 +298,14 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         match &self.node.value {
-            Value::Word(name) if is_keyword(name, "None") => self.visit(|| visitor.visit_none()),
-            Value::Word(name) | Value::Tuple { name: Some(name), .. } | Value::Struct { name: Some(name), .. }
-                if is_keyword(name, "Some") =>
+            Value::Word(_) if self.is_keyword("None") => self.visit(|| visitor.visit_none()),
+            Value::Tuple { items, .. }
+                if self.is_keyword("Some")
+                    && let [item] = items.as_slice() =>
             {
-                match &self.node.value {
-                    Value::Tuple { items, .. } if let [item] = items.as_slice() => {
-                        self.visit(|| visitor.visit_some(NodeDeserializer::new(item, self.context)))
-                    }
-                    _ => self.wrong_type(&"one value in `Some(..)`", None),
-                }
+                self.visit(|| visitor.visit_some(NodeDeserializer::new(item, self.context)))
             }
+            _ if self.is_keyword("Some") || self.is_keyword("None") => self.wrong_type(&"`None` or `Some(..)` with one value", None),
             _ => {
                 let inner = self.wrapped()?;
                 self.visit(|| visitor.visit_some(inner))

@@ -7,56 +7,58 @@ use std::hash::{Hash, Hasher};
 use super::error::{Problems, SyntaxError};
 use super::tree::{Entry, Field, Name, Node, Value};
 
+/// Up to here, comparing each with each is faster than hashing.
+const FEW: usize = 8;
+
 /// Reports every key that equals an earlier one of its map.
 pub(super) fn report_duplicate_keys(entries: &[Entry], problems: &mut Problems) {
-    if entries.len() < 2 {
+    each_duplicate(
+        entries,
+        |entry| Key(&entry.key),
+        |again, first| {
+            let error = SyntaxError::DuplicateKey { key: describe_key(&again.key), first: first.key.span };
+            problems.report(again.key.span, &error);
+        },
+    );
+}
+
+/// Reports every field whose name an earlier one of its struct has.
+pub(super) fn report_duplicate_fields(fields: &[Field], problems: &mut Problems) {
+    each_duplicate(
+        fields,
+        |field| &*field.name.text,
+        |again, first| {
+            let error = SyntaxError::DuplicateField { field: again.name.text.to_string(), first: first.name.span };
+            problems.report(again.name.span, &error);
+        },
+    );
+}
+
+/// Calls `found` with every item whose key an earlier one has, and the first that has it.
+fn each_duplicate<'a, T, K: Eq + Hash>(items: &'a [T], key: impl Fn(&'a T) -> K, mut found: impl FnMut(&'a T, &'a T)) {
+    if items.len() <= FEW {
+        for (index, item) in items.iter().enumerate() {
+            if let Some(first) = items.iter().take(index).find(|first| key(first) == key(item)) {
+                found(item, first);
+            }
+        }
         return;
     }
-    let mut seen = HashMap::with_capacity(entries.len());
-    for entry in entries {
-        match seen.entry(Key(&entry.key)) {
+    let mut seen = HashMap::with_capacity(items.len());
+    for item in items {
+        match seen.entry(key(item)) {
             Slot::Vacant(slot) => {
-                slot.insert(entry.key.span);
+                slot.insert(item);
             }
-            Slot::Occupied(slot) => {
-                let error = SyntaxError::DuplicateKey { key: describe_key(&entry.key), first: *slot.get() };
-                problems.report(entry.key.span, &error);
-            }
+            Slot::Occupied(slot) => found(item, slot.get()),
         }
     }
 }
 
 fn describe_key(key: &Node) -> String {
     match &key.value {
-        Value::Str(text) => format!("{text:?}"),
-        _ => key.describe(),
-    }
-}
-
-/// Reports every field whose name an earlier one of its struct has.
-pub(super) fn report_duplicate_fields(fields: &[Field], problems: &mut Problems) {
-    /// Up to here, comparing with each is faster than hashing.
-    const FEW: usize = 8;
-    let mut report = |field: &Field, first: &Field| {
-        let error = SyntaxError::DuplicateField { field: field.name.text.to_string(), first: first.name.span };
-        problems.report(field.name.span, &error);
-    };
-    if fields.len() <= FEW {
-        for (index, field) in fields.iter().enumerate() {
-            if let Some(first) = fields.iter().take(index).find(|first| first.name.text == field.name.text) {
-                report(field, first);
-            }
-        }
-        return;
-    }
-    let mut seen: HashMap<&str, &Field> = HashMap::with_capacity(fields.len());
-    for field in fields {
-        match seen.entry(&field.name.text) {
-            Slot::Vacant(slot) => {
-                slot.insert(field);
-            }
-            Slot::Occupied(slot) => report(field, slot.get()),
-        }
+        Value::Str(text) => format!("the key {text:?}"),
+        _ => format!("the same key, {},", key.describe()),
     }
 }
 
@@ -66,7 +68,7 @@ struct Key<'a>(&'a Node);
 
 impl PartialEq for Key<'_> {
     fn eq(&self, other: &Self) -> bool {
-        let names = |a: &Option<Name>, b: &Option<Name>| a.as_ref().map(|name| &name.text) == b.as_ref().map(|name| &name.text);
+        let names = |a: &Option<Box<Name>>, b: &Option<Box<Name>>| a.as_ref().map(|name| &name.text) == b.as_ref().map(|name| &name.text);
         let nodes = |a: &[Node], b: &[Node]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Key(a) == Key(b));
         match (&self.0.value, &other.0.value) {
             (Value::Unit, Value::Unit) => true,

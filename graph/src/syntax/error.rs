@@ -52,7 +52,7 @@ pub enum SyntaxError {
     BadIdentifier(String),
     #[error("nested more than {MAX_DEPTH} levels deep")]
     TooDeep,
-    #[error("the key {key} is there twice")]
+    #[error("{key} is there twice")]
     DuplicateKey { key: String, first: Span },
     #[error("the field `{field}` is there twice")]
     DuplicateField { field: String, first: Span },

@@ -138,7 +138,7 @@ impl<'a> Parser<'a> {
                 }
                 let name = Name { text: text.into(), span: self.lexer.span(&token), raw };
                 if self.current.kind == TokenKind::Open(Bracket::Round) {
-                    return self.round(Some(name), start);
+                    return self.round(Some(Box::new(name)), start);
                 }
                 Value::Word(name)
             }
@@ -177,7 +177,7 @@ impl<'a> Parser<'a> {
     }
 
     /// `(...)` behind an optional name: `()`, a tuple or a struct.
-    fn round(&mut self, name: Option<Name>, start: usize) -> Option<Node> {
+    fn round(&mut self, name: Option<Box<Name>>, start: usize) -> Option<Node> {
         let open_end = self.current.end;
         if self.is_struct() {
             let fields = self.brackets(Bracket::Round, Items::Fields, |parser, _| parser.field())?;

@@ -144,6 +144,8 @@ impl<'a> Parser<'a> {
             }
         };
         self.pop_open();
+        // Most sequences are short, and a growing vector makes room for four.
+        items.shrink_to_fit();
         Some(Brackets { items, end })
     }
 

@@ -43,15 +43,15 @@ pub enum Value {
     Word(Name),
     /// `(a, b)`, `Foo(a, b)`, `Some(a)`.
     Tuple {
-        /// What stands before the bracket.
-        name: Option<Name>,
+        /// What stands before the bracket. Boxed, since most have none.
+        name: Option<Box<Name>>,
         /// The values.
         items: Vec<Node>,
     },
     /// `(a: b)`, `Foo(a: b)`.
     Struct {
-        /// What stands before the bracket.
-        name: Option<Name>,
+        /// What stands before the bracket. Boxed, since most have none.
+        name: Option<Box<Name>>,
         /// The fields. Never empty: an empty one is a `Tuple` or `Unit`.
         fields: Vec<Field>,
     },
@@ -203,7 +203,7 @@ impl Node {
     pub fn name(&self) -> Option<&Name> {
         match &self.value {
             Value::Word(name) => Some(name),
-            Value::Tuple { name, .. } | Value::Struct { name, .. } => name.as_ref(),
+            Value::Tuple { name, .. } | Value::Struct { name, .. } => name.as_deref(),
             _ => None,
         }
     }

@@ -4,7 +4,7 @@ use serde::de::{self, DeserializeSeed, Deserializer, EnumAccess, MapAccess, Visi
 
 use super::access::NameDeserializer;
 use super::deserialize::NodeDeserializer;
-use super::fault::{Fault, ReadError};
+use super::fault::{Fault, ReadError, values};
 use super::recover::Context;
 use super::tree::{Name, Node, Value};
 
@@ -59,8 +59,7 @@ impl<'de, 'c> VariantAccess<'de, 'c> {
         let name = self.variant.text;
         let found = match &self.node.value {
             Value::Tuple { items, .. } if items.is_empty() => "empty brackets".to_owned(),
-            Value::Tuple { items, .. } if items.len() == 1 => "one value".to_owned(),
-            Value::Tuple { items, .. } => format!("{} values", items.len()),
+            Value::Tuple { items, .. } => values(items.len()),
             Value::Struct { .. } => "named fields".to_owned(),
             _ => "nothing".to_owned(),
         };
@@ -109,7 +108,7 @@ impl<'de> de::VariantAccess<'de> for VariantAccess<'de, '_> {
     fn tuple_variant<V: Visitor<'de>>(self, length: usize, visitor: V) -> Result<V::Value, ReadError> {
         match &self.node.value {
             Value::Tuple { .. } => NodeDeserializer::without_name(self.node, self.context).deserialize_tuple(length, visitor),
-            _ => self.wrong_content(&format!("{length} values")),
+            _ => self.wrong_content(&values(length)),
         }
     }
 
