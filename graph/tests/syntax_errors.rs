@@ -2,6 +2,8 @@
 //!
 //! The fixtures in `syntax/` hold texts and, behind each, what is reported. `LUMINAIRE_BLESS=1` writes what is reported into them.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::collections::BTreeMap;
 
 use indexmap::IndexMap;
@@ -165,10 +167,11 @@ fn places_reach_the_document() {
     assert_eq!(sources.text(document.outputs["color"].span), "\"a.color\"");
     assert!(document.passes.contains_key("a"));
 
+    type Twice = Spanned<Spanned<(u8, u8)>>;
     #[derive(Deserialize)]
     struct All {
         a: Spanned<Option<Spanned<u8>>>,
-        b: Spanned<Vec<Spanned<Spanned<(u8, u8)>>>>,
+        b: Spanned<Vec<Twice>>,
         c: Spanned<Blend>,
         d: Spanned<IndexMap<Spanned<u8>, ()>>,
     }

@@ -1,5 +1,7 @@
 //! Texts that are too deep, too large or full of problems cost bounded time and memory, and never the process.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::fmt::Write;
 use std::time::Instant;
 

@@ -1,6 +1,8 @@
 //! The `ron` crate as the oracle of the reader: what both accept has the same value, and neither accepts more, but for the
 //! listed differences.
 
+#![allow(clippy::unwrap_used, clippy::panic)]
+
 use std::fmt;
 
 use indexmap::IndexMap;

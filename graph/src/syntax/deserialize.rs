@@ -4,15 +4,16 @@
 //! transparent, any value is `Some` of itself, structs may be named. Numbers are checked against the type that asks, never
 //! wrapped; a decimal integer may stand for a float.
 
-use serde::de::{Deserializer, Error, Visitor};
+use serde::de::{Deserializer, Visitor};
 
 use crate::diagnostic::nearest;
 
 use super::access::{NameDeserializer, PairAccess, RangeAccess, SequenceAccess};
 use super::fault::{Fault, ReadError, values};
+use super::fit::{fit_f32, fit_f64, fit_integer};
 use super::recover::Context;
 use super::spanned::{SPANNED_NAME, visit_spanned};
-use super::tree::{FloatType, Integer, IntegerType, Name, Node, Range, Value};
+use super::tree::{FloatType, IntegerType, Name, Node, Range, Value};
 use super::variant::{ContentAccess, VariantAccess};
 
 /// How often a type may ask again for the same value, as `Option` and newtypes do.
@@ -60,27 +61,6 @@ impl<'de, 'c> NodeDeserializer<'de, 'c> {
 
     fn wrong_type<T>(self, visitor: &dyn serde::de::Expected, hint: Option<String>) -> Result<T, ReadError> {
         Err(ReadError::wrong_type(self.node, visitor, hint))
-    }
-
-    /// The integer, if it is one of the type.
-    fn integer(self, wanted: IntegerType, visitor: &dyn serde::de::Expected) -> Result<i128, ReadError> {
-        let (least, most) = wanted.limits();
-        let value = match self.node.value {
-            Value::Integer(Integer { suffix: Some(suffix), .. }) if suffix != wanted => {
-                return self.wrong_type(visitor, Some(format!("leave the suffix `{}` out", suffix.name())));
-            }
-            Value::Integer(integer) => Some(integer.value()).filter(|value| (least..=most).contains(value)),
-            Value::Float(float) if float.whole => None,
-            _ => return self.wrong_type(visitor, number_hint(self.node)),
-        };
-        value.ok_or_else(|| {
-            let value = match self.node.value {
-                Value::Integer(integer) => integer.value().to_string(),
-                _ => "the number".to_owned(),
-            };
-            let fault = Fault::OutOfRange { value, expected: wanted.name(), least: least.to_string(), most: most.to_string() };
-            ReadError::new(fault).at_node(self.node)
-        })
     }
 
     fn sequence<V: Visitor<'de>>(self, items: &'de [Node], recovers: bool, visitor: V) -> Result<V::Value, ReadError> {
@@ -154,18 +134,10 @@ fn buffers_for_serde<T>() -> bool {
     name.starts_with("serde") && (name.contains("::Content") || name.contains("::TagOrContent"))
 }
 
-/// What may be wrong where a number is expected.
-fn number_hint(node: &Node) -> Option<String> {
-    match &node.value {
-        Value::Str(text) if text.parse::<f64>().is_ok() => Some("numbers have no quotes".to_owned()),
-        _ => None,
-    }
-}
-
 macro_rules! integers {
     ($($method:ident $visit:ident $wanted:ident $type:ty)*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
-            let value = self.integer(IntegerType::$wanted, &visitor)?;
+            let value = fit_integer(self.node, IntegerType::$wanted, &visitor)?;
             // The range was checked, so that the default is never used.
             self.visit(|| visitor.$visit(<$type>::try_from(value).unwrap_or_default()))
         })*
@@ -224,37 +196,13 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
     }
 
     fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
-        match self.node.value {
-            Value::Integer(Integer { negative, magnitude, decimal: true, .. }) => {
-                // Conversion rounds to the nearest, as reading the digits would.
-                let value = magnitude as f32;
-                self.visit(|| visitor.visit_f32(if negative { -value } else { value }))
-            }
-            Value::Float(float) if float.suffix != Some(FloatType::F64) => {
-                if float.single.is_infinite() && float.value.is_finite() {
-                    let fault = Fault::OutOfRange {
-                        value: format!("{:e}", float.value),
-                        expected: "f32",
-                        least: format!("{:e}", f32::MIN),
-                        most: format!("{:e}", f32::MAX),
-                    };
-                    return Err(ReadError::new(fault).at_node(self.node));
-                }
-                self.visit(|| visitor.visit_f32(float.single))
-            }
-            _ => self.wrong_type(&visitor, number_hint(self.node)),
-        }
+        let value = fit_f32(self.node, &visitor)?;
+        self.visit(|| visitor.visit_f32(value))
     }
 
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
-        match self.node.value {
-            Value::Integer(Integer { negative, magnitude, decimal: true, .. }) => {
-                let value = magnitude as f64;
-                self.visit(|| visitor.visit_f64(if negative { -value } else { value }))
-            }
-            Value::Float(float) if float.suffix != Some(FloatType::F32) => self.visit(|| visitor.visit_f64(float.value)),
-            _ => self.wrong_type(&visitor, number_hint(self.node)),
-        }
+        let value = fit_f64(self.node, &visitor)?;
+        self.visit(|| visitor.visit_f64(value))
     }
 
     fn deserialize_char<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
@@ -282,8 +230,8 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
         match &self.node.value {
             Value::Bytes(bytes) => self.visit(|| visitor.visit_borrowed_bytes(bytes)),
             Value::List(items) => {
-                let byte = |item| NodeDeserializer::new(item, self.context).integer(IntegerType::U8, &"a byte");
-                let bytes = items.iter().map(|item| byte(item).map(|byte| u8::try_from(byte).unwrap_or_default()));
+                let byte = |item| fit_integer(item, IntegerType::U8, &"a byte").map(|byte| u8::try_from(byte).unwrap_or_default());
+                let bytes = items.iter().map(byte);
                 let bytes = bytes.collect::<Result<Vec<u8>, ReadError>>()?;
                 self.visit(|| visitor.visit_byte_buf(bytes))
             }
@@ -344,7 +292,7 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         match &self.node.value {
             Value::List(items) => self.sequence(items, true, visitor),
-            Value::Unit | Value::Tuple { name: None, .. } => self.wrong_type(&visitor, Some("lists are written `[..]`".to_owned())),
+            Value::Unit | Value::Tuple { name: None, .. } => self.wrong_type(&visitor, Some("write `[..]` instead of `(..)`".to_owned())),
             _ => self.wrong_type(&visitor, None),
         }
     }
@@ -428,9 +376,5 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         visitor.visit_unit()
-    }
-
-    fn deserialize_i128<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, ReadError> {
-        Err(ReadError::custom("integers of 128 bits are not supported").at_node(self.node))
     }
 }

@@ -1,6 +1,6 @@
 //! What can be wrong with a text before any type is known, and the collector that keeps all of it.
 //!
-//! What can be wrong with a value of a wrong type is in [`super::fault`].
+//! What can be wrong with a value of a wrong type is in `fault.rs`.
 
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::source::{FileId, Span};

@@ -34,6 +34,7 @@ mod attributes;
 mod deserialize;
 mod duplicates;
 mod fault;
+mod fit;
 mod lex;
 mod literal;
 mod number;
