@@ -15,19 +15,19 @@ impl Parser<'_> {
     }
 
     fn attribute(&mut self) -> Option<()> {
-        self.expect(TokenKind::Hash, "`#`")?;
-        self.expect(TokenKind::Bang, "`!`, as in `#![enable(implicit_some)]`")?;
-        self.expect(TokenKind::Open(Bracket::Square), "`[`, as in `#![enable(implicit_some)]`")?;
+        self.expect(&TokenKind::Hash, "`#`")?;
+        self.expect(&TokenKind::Bang, "`!`, as in `#![enable(implicit_some)]`")?;
+        self.expect(&TokenKind::Open(Bracket::Square), "`[`, as in `#![enable(implicit_some)]`")?;
         match self.current.kind {
             TokenKind::Word { text: "enable", raw: false } => {
                 self.advance();
-                self.expect(TokenKind::Open(Bracket::Round), "`(` with names of extensions")?;
+                self.expect(&TokenKind::Open(Bracket::Round), "`(` with names of extensions")?;
                 self.extensions()?;
-                self.expect(TokenKind::Close(Bracket::Round), "`,` or `)`")?;
+                self.expect(&TokenKind::Close(Bracket::Round), "`,` or `)`")?;
             }
             TokenKind::Word { text: "type" | "schema", raw: false } => {
                 self.advance();
-                self.expect(TokenKind::Equals, "`=`")?;
+                self.expect(&TokenKind::Equals, "`=`")?;
                 if !matches!(self.current.kind, TokenKind::Str(_)) {
                     self.unexpected("a string");
                     return None;
@@ -39,7 +39,7 @@ impl Parser<'_> {
                 return None;
             }
         }
-        self.expect(TokenKind::Close(Bracket::Square), "`]`")
+        self.expect(&TokenKind::Close(Bracket::Square), "`]`")
     }
 
     fn extensions(&mut self) -> Option<()> {
@@ -64,8 +64,8 @@ impl Parser<'_> {
         }
     }
 
-    fn expect(&mut self, kind: TokenKind<'_>, name: &'static str) -> Option<()> {
-        if self.current.kind != kind {
+    fn expect(&mut self, kind: &TokenKind<'_>, name: &'static str) -> Option<()> {
+        if self.current.kind != *kind {
             self.unexpected(name);
             return None;
         }

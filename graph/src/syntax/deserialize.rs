@@ -4,15 +4,17 @@
 //! transparent, any value is `Some` of itself, structs may be named. Numbers are checked against the type that asks, never
 //! wrapped; a decimal integer may stand for a float.
 
-use serde::de::{Deserializer, Error, Visitor};
+use serde::de::{Deserializer, Visitor};
 
 use crate::diagnostic::nearest;
 
-use super::access::{ContentAccess, NameDeserializer, PairAccess, RangeAccess, SequenceAccess, VariantAccess};
-use super::fault::{Fault, ReadError};
+use super::access::{NameDeserializer, PairAccess, RangeAccess, SequenceAccess};
+use super::fault::{Fault, ReadError, values};
+use super::fit::{fit_f32, fit_f64, fit_integer};
 use super::recover::Context;
 use super::spanned::{SPANNED_NAME, visit_spanned};
-use super::tree::{FloatType, Integer, IntegerType, Name, Node, Range, Value};
+use super::tree::{FloatType, IntegerType, Name, Node, Range, Value};
+use super::variant::{ContentAccess, VariantAccess};
 
 /// How often a type may ask again for the same value, as `Option` and newtypes do.
 const MAX_WRAPS: u8 = 64;
@@ -46,6 +48,11 @@ impl<'de, 'c> NodeDeserializer<'de, 'c> {
         Ok(NodeDeserializer { wraps: self.wraps + 1, ..self })
     }
 
+    /// Whether the value is, or starts with, a keyword.
+    fn is_keyword(self, keyword: &str) -> bool {
+        !self.name_taken && self.node.name().is_some_and(|name| !name.raw && *name.text == *keyword)
+    }
+
     /// Runs a visitor; its own errors get the place of this node.
     fn visit<T>(self, visit: impl FnOnce() -> Result<T, ReadError>) -> Result<T, ReadError> {
         let damage = self.context.damage();
@@ -56,27 +63,6 @@ impl<'de, 'c> NodeDeserializer<'de, 'c> {
         Err(ReadError::wrong_type(self.node, visitor, hint))
     }
 
-    /// The integer, if it is one of the type.
-    fn integer(self, wanted: IntegerType, visitor: &dyn serde::de::Expected) -> Result<i128, ReadError> {
-        let (least, most) = wanted.limits();
-        let value = match self.node.value {
-            Value::Integer(Integer { suffix: Some(suffix), .. }) if suffix != wanted => {
-                return self.wrong_type(visitor, Some(format!("leave the suffix `{}` out", suffix.name())));
-            }
-            Value::Integer(integer) => Some(integer.value()).filter(|value| (least..=most).contains(value)),
-            Value::Float(float) if float.whole => None,
-            _ => return self.wrong_type(visitor, number_hint(self.node)),
-        };
-        value.ok_or_else(|| {
-            let value = match self.node.value {
-                Value::Integer(integer) => integer.value().to_string(),
-                _ => "the number".to_owned(),
-            };
-            let fault = Fault::OutOfRange { value, expected: wanted.name(), least: least.to_string(), most: most.to_string() };
-            ReadError::new(fault).at_node(self.node)
-        })
-    }
-
     fn sequence<V: Visitor<'de>>(self, items: &'de [Node], recovers: bool, visitor: V) -> Result<V::Value, ReadError> {
         self.visit(|| {
             let mut access = SequenceAccess::new(items, self.context, recovers);
@@ -84,8 +70,8 @@ impl<'de, 'c> NodeDeserializer<'de, 'c> {
             match access.left() {
                 0 => Ok(value),
                 left => Err(ReadError::new(Fault::WrongLength {
-                    expected: format!("{} values", items.len().saturating_sub(left)),
-                    found: format!("{} values", items.len()),
+                    expected: values(items.len().saturating_sub(left)),
+                    found: values(items.len()),
                 })),
             }
         })
@@ -148,23 +134,10 @@ fn buffers_for_serde<T>() -> bool {
     name.starts_with("serde") && (name.contains("::Content") || name.contains("::TagOrContent"))
 }
 
-/// What may be wrong where a number is expected.
-fn number_hint(node: &Node) -> Option<String> {
-    match &node.value {
-        Value::Str(text) if text.parse::<f64>().is_ok() => Some("numbers have no quotes".to_owned()),
-        _ => None,
-    }
-}
-
-/// Whether a name is the keyword.
-pub(super) fn is_keyword(name: &Name, keyword: &str) -> bool {
-    !name.raw && *name.text == *keyword
-}
-
 macro_rules! integers {
     ($($method:ident $visit:ident $wanted:ident $type:ty)*) => {
         $(fn $method<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
-            let value = self.integer(IntegerType::$wanted, &visitor)?;
+            let value = fit_integer(self.node, IntegerType::$wanted, &visitor)?;
             // The range was checked, so that the default is never used.
             self.visit(|| visitor.$visit(<$type>::try_from(value).unwrap_or_default()))
         })*
@@ -191,14 +164,10 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
             Value::Bytes(bytes) => self.visit(|| visitor.visit_borrowed_bytes(bytes)),
             Value::List(_) => self.deserialize_seq(visitor),
             Value::Map(_) => self.deserialize_map(visitor),
-            Value::Word(name) | Value::Tuple { name: Some(name), .. } | Value::Struct { name: Some(name), .. }
-                if is_keyword(name, "Some") || is_keyword(name, "None") =>
-            {
-                self.deserialize_option(visitor)
-            }
+            _ if self.is_keyword("Some") || self.is_keyword("None") => self.deserialize_option(visitor),
             Value::Word(name) if buffers_for_serde::<V::Value>() => self.visit(|| visitor.visit_borrowed_str(&name.text)),
             Value::Word(_) => self.visit(|| visitor.visit_unit()),
-            Value::Tuple { name, .. } | Value::Struct { name, .. } => self.any_content(name.as_ref(), visitor),
+            Value::Tuple { name, .. } | Value::Struct { name, .. } => self.any_content(name.as_deref(), visitor),
             Value::Range(range) if range.start.is_none() && range.end.is_none() => self.visit(|| visitor.visit_unit()),
             Value::Range(range) => self.range(range, visitor),
         }
@@ -227,37 +196,13 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
     }
 
     fn deserialize_f32<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
-        match self.node.value {
-            Value::Integer(Integer { negative, magnitude, decimal: true, .. }) => {
-                // Conversion rounds to the nearest, as reading the digits would.
-                let value = magnitude as f32;
-                self.visit(|| visitor.visit_f32(if negative { -value } else { value }))
-            }
-            Value::Float(float) if float.suffix != Some(FloatType::F64) => {
-                if float.single.is_infinite() && float.value.is_finite() {
-                    let fault = Fault::OutOfRange {
-                        value: format!("{:e}", float.value),
-                        expected: "f32",
-                        least: format!("{:e}", f32::MIN),
-                        most: format!("{:e}", f32::MAX),
-                    };
-                    return Err(ReadError::new(fault).at_node(self.node));
-                }
-                self.visit(|| visitor.visit_f32(float.single))
-            }
-            _ => self.wrong_type(&visitor, number_hint(self.node)),
-        }
+        let value = fit_f32(self.node, &visitor)?;
+        self.visit(|| visitor.visit_f32(value))
     }
 
     fn deserialize_f64<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
-        match self.node.value {
-            Value::Integer(Integer { negative, magnitude, decimal: true, .. }) => {
-                let value = magnitude as f64;
-                self.visit(|| visitor.visit_f64(if negative { -value } else { value }))
-            }
-            Value::Float(float) if float.suffix != Some(FloatType::F32) => self.visit(|| visitor.visit_f64(float.value)),
-            _ => self.wrong_type(&visitor, number_hint(self.node)),
-        }
+        let value = fit_f64(self.node, &visitor)?;
+        self.visit(|| visitor.visit_f64(value))
     }
 
     fn deserialize_char<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
@@ -285,8 +230,8 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
         match &self.node.value {
             Value::Bytes(bytes) => self.visit(|| visitor.visit_borrowed_bytes(bytes)),
             Value::List(items) => {
-                let byte = |item| NodeDeserializer::new(item, self.context).integer(IntegerType::U8, &"a byte");
-                let bytes = items.iter().map(|item| byte(item).map(|byte| u8::try_from(byte).unwrap_or_default()));
+                let byte = |item| fit_integer(item, IntegerType::U8, &"a byte").map(|byte| u8::try_from(byte).unwrap_or_default());
+                let bytes = items.iter().map(byte);
                 let bytes = bytes.collect::<Result<Vec<u8>, ReadError>>()?;
                 self.visit(|| visitor.visit_byte_buf(bytes))
             }
@@ -301,17 +246,14 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
 
     fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         match &self.node.value {
-            Value::Word(name) if is_keyword(name, "None") => self.visit(|| visitor.visit_none()),
-            Value::Word(name) | Value::Tuple { name: Some(name), .. } | Value::Struct { name: Some(name), .. }
-                if is_keyword(name, "Some") =>
+            Value::Word(_) if self.is_keyword("None") => self.visit(|| visitor.visit_none()),
+            Value::Tuple { items, .. }
+                if self.is_keyword("Some")
+                    && let [item] = items.as_slice() =>
             {
-                match &self.node.value {
-                    Value::Tuple { items, .. } if let [item] = items.as_slice() => {
-                        self.visit(|| visitor.visit_some(NodeDeserializer::new(item, self.context)))
-                    }
-                    _ => self.wrong_type(&"one value in `Some(..)`", None),
-                }
+                self.visit(|| visitor.visit_some(NodeDeserializer::new(item, self.context)))
             }
+            _ if self.is_keyword("Some") || self.is_keyword("None") => self.wrong_type(&"`None` or `Some(..)` with one value", None),
             _ => {
                 let inner = self.wrapped()?;
                 self.visit(|| visitor.visit_some(inner))
@@ -350,7 +292,7 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
     fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         match &self.node.value {
             Value::List(items) => self.sequence(items, true, visitor),
-            Value::Unit | Value::Tuple { name: None, .. } => self.wrong_type(&visitor, Some("lists are written `[..]`".to_owned())),
+            Value::Unit | Value::Tuple { name: None, .. } => self.wrong_type(&visitor, Some("write `[..]` instead of `(..)`".to_owned())),
             _ => self.wrong_type(&visitor, None),
         }
     }
@@ -434,9 +376,5 @@ impl<'de> Deserializer<'de> for NodeDeserializer<'de, '_> {
 
     fn deserialize_ignored_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, ReadError> {
         visitor.visit_unit()
-    }
-
-    fn deserialize_i128<V: Visitor<'de>>(self, _visitor: V) -> Result<V::Value, ReadError> {
-        Err(ReadError::custom("integers of 128 bits are not supported").at_node(self.node))
     }
 }

@@ -1,6 +1,6 @@
 //! What can be wrong with a text before any type is known, and the collector that keeps all of it.
 //!
-//! What can be wrong with a value of a wrong type is in [`super::fault`].
+//! What can be wrong with a value of a wrong type is in `fault.rs`.
 
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::source::{FileId, Span};
@@ -20,7 +20,7 @@ pub enum SyntaxError {
     TooLarge { bytes: usize },
     #[error("more than {MAX_PROBLEMS} problems: the rest of the text was not read")]
     TooMany,
-    #[error("unexpected character {0:?}")]
+    #[error("unexpected character `{}`", .0.escape_debug())]
     UnexpectedCharacter(char),
     #[error("the file starts with a byte order mark")]
     ByteOrderMark,
@@ -52,7 +52,7 @@ pub enum SyntaxError {
     BadIdentifier(String),
     #[error("nested more than {MAX_DEPTH} levels deep")]
     TooDeep,
-    #[error("the key {key} is there twice")]
+    #[error("{key} is there twice")]
     DuplicateKey { key: String, first: Span },
     #[error("the field `{field}` is there twice")]
     DuplicateField { field: String, first: Span },

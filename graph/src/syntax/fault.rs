@@ -29,7 +29,7 @@ pub(super) enum Fault {
     WrongName { expected: &'static str, found: String },
     #[error("{} has no field `{field}`", in_code(owner, "this struct"))]
     UnknownField { field: String, accepted: &'static [&'static str], owner: String },
-    #[error("unknown {} `{variant}`", in_words(owner, "variant"))]
+    #[error("{} has no variant `{variant}`", in_code(owner, "this enum"))]
     UnknownVariant { variant: String, accepted: &'static [&'static str], owner: String },
     #[error("missing field `{field}` in {}", in_code(owner, "a struct"))]
     MissingField { field: String, owner: String },
@@ -45,8 +45,13 @@ fn in_code(name: &str, otherwise: &str) -> String {
     if name.is_empty() { otherwise.to_owned() } else { format!("`{name}`") }
 }
 
-fn in_words(name: &str, otherwise: &str) -> String {
-    if name.is_empty() { otherwise.to_owned() } else { format!("{otherwise} of `{name}`") }
+/// A number of values in words.
+pub(super) fn values(count: usize) -> String {
+    match count {
+        0 => "no value".to_owned(),
+        1 => "one value".to_owned(),
+        _ => format!("{count} values"),
+    }
 }
 
 /// A fault on its way out of the layers of the reader.
@@ -106,13 +111,6 @@ impl ReadError {
         self
     }
 
-    pub(super) fn hint(mut self, hint: Option<String>) -> ReadError {
-        if self.0.hint.is_none() {
-            self.0.hint = hint;
-        }
-        self
-    }
-
     /// Sets the field or entry that a retry leaves out, unless an inner layer has.
     pub(super) fn within(mut self, unit: Unit) -> ReadError {
         self.0.unit.get_or_insert(unit);
@@ -166,16 +164,30 @@ pub(super) fn friendly(expected: &str) -> String {
         "a sequence" => "a list `[..]`".to_owned(),
         "a map" => "a map `{..}`".to_owned(),
         "a boolean" => "`true` or `false`".to_owned(),
-        _ => match expected.split_once(' ') {
-            Some(("struct", name)) => format!("a struct `{name}(..)`"),
-            Some(("enum", name)) => format!("a variant of `{name}`"),
-            Some(("variant", name)) => format!("`{name}`"),
-            _ => match expected.strip_prefix("struct variant ").or_else(|| expected.strip_prefix("tuple variant ")) {
-                Some(name) => format!("the content of `{name}(..)`"),
-                None => expected.to_owned(),
-            },
-        },
+        _ => of_shape(expected).unwrap_or_else(|| expected.to_owned()),
     }
+}
+
+/// What serde's derived visitors and tuples expect.
+fn of_shape(expected: &str) -> Option<String> {
+    let of_length = |text: &str| {
+        let (name, count) = text.split_once(" with ")?;
+        let count = values(count.split_once(' ')?.0.parse().ok()?);
+        Some(format!("{count} in `{}(..)`", name.rsplit("::").next()?))
+    };
+    if let Some(count) = expected.strip_prefix("a tuple of size ").or_else(|| expected.strip_prefix("an array of length ")) {
+        return Some(format!("{} in `(..)`", values(count.parse().ok()?)));
+    }
+    if let Some(rest) = expected.strip_prefix("tuple variant ").or_else(|| expected.strip_prefix("tuple struct ")) {
+        return of_length(rest).or_else(|| Some(format!("the values of `{}(..)`", rest.rsplit("::").next()?)));
+    }
+    if let Some(name) = expected.strip_prefix("struct variant ") {
+        return Some(format!("the fields of `{}(..)`", name.rsplit("::").next()?));
+    }
+    if let Some(rest) = expected.strip_prefix("struct ") {
+        return of_length(rest).or_else(|| Some(format!("a struct `{rest}(..)`")));
+    }
+    expected.strip_prefix("enum ").map(|name| format!("a variant of `{name}`"))
 }
 
 impl fmt::Display for ReadError {
@@ -206,7 +218,7 @@ impl Error for ReadError {
     }
 
     fn invalid_length(length: usize, expected: &dyn Expected) -> ReadError {
-        ReadError::new(Fault::WrongLength { expected: friendly(&expected.to_string()), found: format!("{length} values") })
+        ReadError::new(Fault::WrongLength { expected: friendly(&expected.to_string()), found: values(length) })
     }
 
     fn unknown_variant(variant: &str, accepted: &'static [&'static str]) -> ReadError {

@@ -308,3 +308,25 @@ fn is_based(text: &str) -> bool {
     let text = text.strip_prefix(['+', '-']).unwrap_or(text);
     ["0x", "0b", "0o"].iter().any(|prefix| text.starts_with(prefix))
 }
+
+/// A token for messages.
+pub(super) fn describe(kind: &TokenKind<'_>) -> String {
+    match kind {
+        TokenKind::Open(bracket) => format!("`{}`", bracket.opener()),
+        TokenKind::Close(bracket) => format!("`{}`", bracket.closer()),
+        TokenKind::Comma => "`,`".to_owned(),
+        TokenKind::Colon => "`:`".to_owned(),
+        TokenKind::Equals => "`=`".to_owned(),
+        TokenKind::Hash => "`#`".to_owned(),
+        TokenKind::Bang => "`!`".to_owned(),
+        TokenKind::Dots { inclusive: true } => "`..=`".to_owned(),
+        TokenKind::Dots { inclusive: false } => "`..`".to_owned(),
+        TokenKind::Word { text, .. } => format!("`{text}`"),
+        TokenKind::Str(_) => "a string".to_owned(),
+        TokenKind::Bytes(_) => "a byte string".to_owned(),
+        TokenKind::Char(_) => "a character".to_owned(),
+        TokenKind::Number(_) => "a number".to_owned(),
+        TokenKind::Bad => "something that is not RON".to_owned(),
+        TokenKind::End => "the end of the file".to_owned(),
+    }
+}

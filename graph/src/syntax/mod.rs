@@ -34,11 +34,14 @@ mod attributes;
 mod deserialize;
 mod duplicates;
 mod fault;
+mod fit;
 mod lex;
 mod literal;
 mod number;
 mod parse;
 mod recover;
+mod sequence;
+mod variant;
 
 pub use parse::parse;
 pub use recover::{deserialize_document, from_tree};

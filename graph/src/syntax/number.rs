@@ -99,9 +99,23 @@ fn parse_integer(word: &str, text: &str, negative: bool, base: u32) -> Result<Nu
     }
 }
 
+const TOO_WIDE: &str = "integers have at most 64 bits";
+
+fn is_too_wide(text: &str) -> bool {
+    text.ends_with("i128") || text.ends_with("u128")
+}
+
+fn why_no_float(text: &str) -> &'static str {
+    match split_integer_suffix(text) {
+        _ if is_too_wide(text) => TOO_WIDE,
+        (digits, Some(_)) if digits.parse::<f64>().is_ok() => "it has a point or an exponent, and the suffix of an integer",
+        _ => "this is no number, and names don't start like one",
+    }
+}
+
 fn why_no_digit(text: &str, base: u32) -> &'static str {
-    if text.ends_with("i128") || text.ends_with("u128") {
-        return "integers have at most 64 bits";
+    if is_too_wide(text) {
+        return TOO_WIDE;
     }
     match base {
         2 => "a binary number has the digits 0 and 1",
@@ -126,7 +140,7 @@ fn parse_float(word: &str) -> Result<Number, SyntaxError> {
             '0'..='9' | 'e' | 'E' => underscore_allowed = true,
             '.' => underscore_allowed = false,
             '+' | '-' => {}
-            _ => return Err(bad(word, "this is no number, and names don't start like one")),
+            _ => return Err(bad(word, why_no_float(word))),
         }
         plain.push(char);
     }

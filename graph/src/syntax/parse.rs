@@ -2,7 +2,7 @@
 //!
 //! The grammar is that of the `ron` crate (0.12). Every problem is collected: after one, reading goes on behind the next comma
 //! or before the closing bracket of the place, and what is skipped is not reported. Recursion is bounded by
-//! [`MAX_DEPTH`]; deeper text is skipped without recursion.
+//! [`MAX_DEPTH`](super::tree::MAX_DEPTH); deeper text is skipped without recursion.
 //!
 //! Accepted downside: the two extensions that would change what a text means (`unwrap_variant_newtypes`,
 //! `explicit_struct_names`) are refused.
@@ -16,13 +16,14 @@ use super::duplicates::{report_duplicate_fields, report_duplicate_keys};
 use super::error::{MAX_BYTES, Problems, SyntaxError};
 use super::lex::{Bracket, Lexer, Token, TokenKind};
 use super::number::{Number, special_float};
-use super::tree::{Entry, Field, MAX_DEPTH, Name, Node, Range, Value};
+use super::sequence::Items;
+use super::tree::{Entry, Field, Name, Node, Range, Value};
 
 /// Reads a RON text into a tree.
 ///
 /// # Errors
 /// Every problem of the text, in its order: slips of the grammar, numbers that no type holds, duplicate keys and fields,
-/// nesting beyond [`MAX_DEPTH`], more than [`MAX_BYTES`] bytes.
+/// nesting beyond [`MAX_DEPTH`](super::tree::MAX_DEPTH), more than [`MAX_BYTES`] bytes.
 pub fn parse(text: &str, file: FileId) -> Result<Node, Vec<Diagnostic>> {
     if text.len() > MAX_BYTES {
         return Err(vec![SyntaxError::TooLarge { bytes: text.len() }.diagnostic(Span::new(file, 0, 0))]);
@@ -36,50 +37,17 @@ pub fn parse(text: &str, file: FileId) -> Result<Node, Vec<Diagnostic>> {
     }
 }
 
-/// A bracketed sequence, as far as it could be read.
-struct Brackets<T> {
-    items: Vec<T>,
-    end: usize,
-}
-
-/// What a bracketed sequence consists of.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Items {
-    Values,
-    Entries,
-    Fields,
-}
-
-impl Items {
-    fn name(self) -> &'static str {
-        match self {
-            Items::Values => "values",
-            Items::Entries => "the entries of a map",
-            Items::Fields => "the fields of a struct",
-        }
-    }
-}
-
-/// Where skipping ends, unless a closing bracket of the current sequence comes first.
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Until {
-    Comma,
-    Closer,
-    /// Behind the bracket that matches the opening one at the start.
-    Group,
-}
-
 pub(super) struct Parser<'a> {
     pub(super) lexer: Lexer<'a>,
     pub(super) current: Token<'a>,
-    ahead: VecDeque<Token<'a>>,
+    pub(super) ahead: VecDeque<Token<'a>>,
     /// The token before the current one, for places between tokens.
     pub(super) previous_end: usize,
     /// Whether the token before was a string over several lines, and where it starts.
-    previous_long_string: Option<Span>,
-    open: Vec<(Bracket, Span)>,
+    pub(super) previous_long_string: Option<Span>,
+    pub(super) open: Vec<(Bracket, Span)>,
     /// How many of each kind are open, so that a closing bracket is judged without a search.
-    open_of_kind: [usize; 3],
+    pub(super) open_of_kind: [usize; 3],
 }
 
 impl<'a> Parser<'a> {
@@ -94,60 +62,6 @@ impl<'a> Parser<'a> {
             previous_long_string: None,
             open: Vec::new(),
             open_of_kind: [0; 3],
-        }
-    }
-
-    // Tokens.
-
-    pub(super) fn advance(&mut self) -> Token<'a> {
-        let next = self.ahead.pop_front().unwrap_or_else(|| self.lexer.next_token());
-        let token = std::mem::replace(&mut self.current, next);
-        self.previous_end = token.end;
-        let long = matches!(token.kind, TokenKind::Str(_)) && self.lexer.spans_lines(&token);
-        self.previous_long_string = long.then(|| self.lexer.span(&token));
-        token
-    }
-
-    /// A token behind the current one.
-    fn peek(&mut self, index: usize) -> &TokenKind<'a> {
-        while self.ahead.len() <= index {
-            let token = self.lexer.next_token();
-            self.ahead.push_back(token);
-        }
-        self.ahead.get(index).map_or(&TokenKind::End, |token| &token.kind)
-    }
-
-    pub(super) fn span(&self) -> Span {
-        self.lexer.span(&self.current)
-    }
-
-    pub(super) fn span_from(&self, start: usize) -> Span {
-        self.lexer.problems.span(start, self.previous_end)
-    }
-
-    pub(super) fn report(&mut self, span: Span, error: &SyntaxError) {
-        self.check_runaway_string();
-        self.lexer.problems.report(span, error);
-    }
-
-    /// An odd quote turns the text inside out from there on: strings become words and words strings. It shows as a string over
-    /// several lines with text right behind its closing quote, and nothing from its start on can be judged.
-    fn check_runaway_string(&mut self) {
-        if let Some(string) = self.previous_long_string
-            && self.current.start == self.previous_end
-            && matches!(self.current.kind, TokenKind::Word { .. } | TokenKind::Number(_) | TokenKind::Bad | TokenKind::Str(_))
-        {
-            let quote = self.lexer.problems.span(self.previous_end.saturating_sub(1), self.previous_end);
-            let line = Span { end: self.lexer.line_end(string.start as usize) as u32, ..string };
-            self.lexer.problems.forget_from(string);
-            self.lexer.problems.report_last(line, &SyntaxError::RunawayString { end: quote });
-        }
-    }
-
-    pub(super) fn unexpected(&mut self, expected: &'static str) {
-        if self.current.kind != TokenKind::Bad {
-            let found = describe(&self.current.kind);
-            self.report(self.span(), &SyntaxError::Unexpected { expected, found });
         }
     }
 
@@ -224,7 +138,7 @@ impl<'a> Parser<'a> {
                 }
                 let name = Name { text: text.into(), span: self.lexer.span(&token), raw };
                 if self.current.kind == TokenKind::Open(Bracket::Round) {
-                    return self.round(Some(name), start);
+                    return self.round(Some(Box::new(name)), start);
                 }
                 Value::Word(name)
             }
@@ -263,7 +177,7 @@ impl<'a> Parser<'a> {
     }
 
     /// `(...)` behind an optional name: `()`, a tuple or a struct.
-    fn round(&mut self, name: Option<Name>, start: usize) -> Option<Node> {
+    fn round(&mut self, name: Option<Box<Name>>, start: usize) -> Option<Node> {
         let open_end = self.current.end;
         if self.is_struct() {
             let fields = self.brackets(Bracket::Round, Items::Fields, |parser, _| parser.field())?;
@@ -380,196 +294,11 @@ impl<'a> Parser<'a> {
         }
         starts_value.then_some(())
     }
-
-    // Brackets.
-
-    /// Reads a bracketed, comma-separated sequence. The current token is the opening bracket. `item` may set its flag to false
-    /// to have the rest skipped.
-    fn brackets<T>(
-        &mut self,
-        bracket: Bracket,
-        kind: Items,
-        mut item: impl FnMut(&mut Self, &mut bool) -> Option<T>,
-    ) -> Option<Brackets<T>> {
-        if self.open.len() >= MAX_DEPTH {
-            self.report(self.span(), &SyntaxError::TooDeep);
-            self.skip(Until::Group);
-            return None;
-        }
-        self.push_open(bracket);
-        let mut items = Vec::new();
-        let mut go_on = true;
-        let mut comma_reported = false;
-        let end = loop {
-            match self.current.kind {
-                TokenKind::Close(closer) if closer == bracket => break self.advance().end,
-                TokenKind::Close(closer) => {
-                    if self.count(closer) > 0 {
-                        self.report_unclosed(bracket, closer);
-                        break self.previous_end;
-                    }
-                    self.report(self.span(), &SyntaxError::StrayCloser(closer.closer()));
-                    self.advance();
-                }
-                TokenKind::End => {
-                    self.report_unclosed_at_end();
-                    break self.previous_end;
-                }
-                TokenKind::Comma => {
-                    self.unexpected("a value");
-                    self.advance();
-                }
-                _ => match item(self, &mut go_on) {
-                    Some(value) => {
-                        items.push(value);
-                        self.separator(kind, &mut comma_reported);
-                    }
-                    None if go_on => self.skip_item(),
-                    None => self.skip(Until::Closer),
-                },
-            }
-        };
-        self.pop_open();
-        Some(Brackets { items, end })
-    }
-
-    /// What follows an item. A sequence that is written without commas gets one message.
-    fn separator(&mut self, kind: Items, comma_reported: &mut bool) {
-        match self.current.kind {
-            TokenKind::Comma => {
-                self.advance();
-            }
-            TokenKind::Close(_) | TokenKind::End => {}
-            TokenKind::Bad => {
-                self.check_runaway_string();
-                self.skip_item();
-            }
-            TokenKind::Colon | TokenKind::Equals | TokenKind::Hash | TokenKind::Bang => {
-                self.unexpected("`,` or a closing bracket");
-                self.skip_item();
-            }
-            _ => {
-                if !std::mem::replace(comma_reported, true) {
-                    let span = self.lexer.problems.span(self.previous_end, self.previous_end);
-                    self.report(span, &SyntaxError::MissingComma(kind.name()));
-                }
-                if kind != Items::Values && *self.peek(0) != TokenKind::Colon {
-                    self.skip_item();
-                }
-            }
-        }
-    }
-
-    /// Skips what is left of a failed item, and the comma behind it.
-    fn skip_item(&mut self) {
-        self.skip(Until::Comma);
-        if self.current.kind == TokenKind::Comma {
-            self.advance();
-        }
-    }
-
-    /// Skips without reporting anything. Ends before the closing bracket of the current sequence at the latest.
-    fn skip(&mut self, until: Until) {
-        let base = self.open.len();
-        let base_of_kind = self.open_of_kind;
-        let was_muted = std::mem::replace(&mut self.lexer.problems.muted, true);
-        loop {
-            match self.current.kind {
-                TokenKind::End => break,
-                TokenKind::Comma if until == Until::Comma && self.open.len() == base => break,
-                TokenKind::Open(bracket) => {
-                    self.push_open(bracket);
-                    continue;
-                }
-                TokenKind::Close(bracket) => {
-                    if self.count(bracket) > base_of_kind.get(bracket as usize).copied().unwrap_or(0) {
-                        while self.open.last().is_some_and(|(last, _)| *last != bracket) {
-                            self.pop_open();
-                        }
-                        self.pop_open();
-                        if until == Until::Group && self.open.len() == base {
-                            self.advance();
-                            break;
-                        }
-                    } else if self.count(bracket) > 0 {
-                        while self.open.len() > base {
-                            self.pop_open();
-                        }
-                        break;
-                    }
-                }
-                _ => {}
-            }
-            self.advance();
-        }
-        self.lexer.problems.muted = was_muted;
-    }
-
-    /// Reads the opening bracket.
-    fn push_open(&mut self, bracket: Bracket) {
-        self.open.push((bracket, self.span()));
-        if let Some(count) = self.open_of_kind.get_mut(bracket as usize) {
-            *count += 1;
-        }
-        self.advance();
-    }
-
-    fn pop_open(&mut self) {
-        if let Some((bracket, _)) = self.open.pop()
-            && let Some(count) = self.open_of_kind.get_mut(bracket as usize)
-        {
-            *count = count.saturating_sub(1);
-        }
-    }
-
-    /// How many brackets of a kind are open.
-    fn count(&self, bracket: Bracket) -> usize {
-        self.open_of_kind.get(bracket as usize).copied().unwrap_or(0)
-    }
-
-    fn report_unclosed(&mut self, bracket: Bracket, closer: Bracket) {
-        if let Some((_, span)) = self.open.last().copied() {
-            let error = SyntaxError::Unclosed(bracket.opener(), Some((closer.closer(), self.span())), Vec::new());
-            self.report(span, &error);
-        }
-    }
-
-    /// One message for all that is still open at the end.
-    fn report_unclosed_at_end(&mut self) {
-        const SHOWN: usize = 4;
-        if let Some(((bracket, span), others)) = self.open.split_last() {
-            let others = others.iter().rev().take(SHOWN).map(|(_, span)| *span).collect();
-            let error = SyntaxError::Unclosed(bracket.opener(), None, others);
-            self.lexer.problems.report_last(*span, &error);
-        }
-    }
 }
 
 fn number_value(number: Number) -> Value {
     match number {
         Number::Integer(integer) => Value::Integer(integer),
         Number::Float(float) => Value::Float(float),
-    }
-}
-
-/// A token for messages.
-fn describe(kind: &TokenKind<'_>) -> String {
-    match kind {
-        TokenKind::Open(bracket) => format!("`{}`", bracket.opener()),
-        TokenKind::Close(bracket) => format!("`{}`", bracket.closer()),
-        TokenKind::Comma => "`,`".to_owned(),
-        TokenKind::Colon => "`:`".to_owned(),
-        TokenKind::Equals => "`=`".to_owned(),
-        TokenKind::Hash => "`#`".to_owned(),
-        TokenKind::Bang => "`!`".to_owned(),
-        TokenKind::Dots { inclusive: true } => "`..=`".to_owned(),
-        TokenKind::Dots { inclusive: false } => "`..`".to_owned(),
-        TokenKind::Word { text, .. } => format!("`{text}`"),
-        TokenKind::Str(_) => "a string".to_owned(),
-        TokenKind::Bytes(_) => "a byte string".to_owned(),
-        TokenKind::Char(_) => "a character".to_owned(),
-        TokenKind::Number(_) => "a number".to_owned(),
-        TokenKind::Bad => "something that is not RON".to_owned(),
-        TokenKind::End => "the end of the file".to_owned(),
     }
 }

@@ -4,8 +4,6 @@
 //! decide. It is at most [`MAX_DEPTH`] levels deep where the parser made it, so that walking and dropping it can recurse.
 //! Accepted downside: strings are copied out of the text, so that a tree outlives it.
 
-use std::hash::{Hash, Hasher};
-
 use crate::source::Span;
 
 /// How many brackets may be open at once.
@@ -45,15 +43,15 @@ pub enum Value {
     Word(Name),
     /// `(a, b)`, `Foo(a, b)`, `Some(a)`.
     Tuple {
-        /// What stands before the bracket.
-        name: Option<Name>,
+        /// What stands before the bracket. Boxed, since most have none.
+        name: Option<Box<Name>>,
         /// The values.
         items: Vec<Node>,
     },
     /// `(a: b)`, `Foo(a: b)`.
     Struct {
-        /// What stands before the bracket.
-        name: Option<Name>,
+        /// What stands before the bracket. Boxed, since most have none.
+        name: Option<Box<Name>>,
         /// The fields. Never empty: an empty one is a `Tuple` or `Unit`.
         fields: Vec<Field>,
     },
@@ -205,7 +203,7 @@ impl Node {
     pub fn name(&self) -> Option<&Name> {
         match &self.value {
             Value::Word(name) => Some(name),
-            Value::Tuple { name, .. } | Value::Struct { name, .. } => name.as_ref(),
+            Value::Tuple { name, .. } | Value::Struct { name, .. } => name.as_deref(),
             _ => None,
         }
     }
@@ -250,81 +248,6 @@ impl Node {
             Value::Tuple { name: None, .. } => "a tuple".to_owned(),
             Value::Struct { name: None, .. } => "a struct".to_owned(),
             Value::Range(_) => "a range".to_owned(),
-        }
-    }
-}
-
-/// A node compared and hashed as a map key: by value, places left out, numbers without the way in which they were written.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct Key<'a>(pub(super) &'a Node);
-
-impl PartialEq for Key<'_> {
-    fn eq(&self, other: &Self) -> bool {
-        let names = |a: &Option<Name>, b: &Option<Name>| a.as_ref().map(|name| &name.text) == b.as_ref().map(|name| &name.text);
-        let nodes = |a: &[Node], b: &[Node]| a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Key(a) == Key(b));
-        match (&self.0.value, &other.0.value) {
-            (Value::Unit, Value::Unit) => true,
-            (Value::Bool(a), Value::Bool(b)) => a == b,
-            (Value::Integer(a), Value::Integer(b)) => a.value() == b.value(),
-            (Value::Float(a), Value::Float(b)) => a.value.to_bits() == b.value.to_bits(),
-            (Value::Char(a), Value::Char(b)) => a == b,
-            (Value::Str(a), Value::Str(b)) => a == b,
-            (Value::Bytes(a), Value::Bytes(b)) => a == b,
-            (Value::List(a), Value::List(b)) => nodes(a, b),
-            (Value::Map(a), Value::Map(b)) => {
-                a.len() == b.len() && a.iter().zip(b).all(|(a, b)| Key(&a.key) == Key(&b.key) && Key(&a.value) == Key(&b.value))
-            }
-            (Value::Word(a), Value::Word(b)) => a.text == b.text,
-            (Value::Tuple { name: a, items: x }, Value::Tuple { name: b, items: y }) => names(a, b) && nodes(x, y),
-            (Value::Struct { name: a, fields: x }, Value::Struct { name: b, fields: y }) => {
-                names(a, b)
-                    && x.len() == y.len()
-                    && x.iter().zip(y).all(|(x, y)| x.name.text == y.name.text && Key(&x.value) == Key(&y.value))
-            }
-            (Value::Range(a), Value::Range(b)) => {
-                a.inclusive == b.inclusive
-                    && a.start.as_ref().map(Key) == b.start.as_ref().map(Key)
-                    && a.end.as_ref().map(Key) == b.end.as_ref().map(Key)
-            }
-            _ => false,
-        }
-    }
-}
-
-impl Eq for Key<'_> {}
-
-impl Hash for Key<'_> {
-    fn hash<H: Hasher>(&self, state: &mut H) {
-        std::mem::discriminant(&self.0.value).hash(state);
-        match &self.0.value {
-            Value::Unit => {}
-            Value::Bool(value) => value.hash(state),
-            Value::Integer(integer) => integer.value().hash(state),
-            Value::Float(float) => float.value.to_bits().hash(state),
-            Value::Char(char) => char.hash(state),
-            Value::Str(text) => text.hash(state),
-            Value::Bytes(bytes) => bytes.hash(state),
-            Value::List(items) => items.iter().for_each(|item| Key(item).hash(state)),
-            Value::Map(entries) => entries.iter().for_each(|entry| {
-                Key(&entry.key).hash(state);
-                Key(&entry.value).hash(state);
-            }),
-            Value::Word(name) => name.text.hash(state),
-            Value::Tuple { name, items } => {
-                name.as_ref().map(|name| &name.text).hash(state);
-                items.iter().for_each(|item| Key(item).hash(state));
-            }
-            Value::Struct { name, fields } => {
-                name.as_ref().map(|name| &name.text).hash(state);
-                fields.iter().for_each(|field| {
-                    field.name.text.hash(state);
-                    Key(&field.value).hash(state);
-                });
-            }
-            Value::Range(range) => {
-                range.start.as_ref().map(Key).hash(state);
-                range.end.as_ref().map(Key).hash(state);
-            }
         }
     }
 }
