@@ -9,7 +9,7 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use super::layout::ViewTable;
-use super::projection::{CameraView, columns, vector};
+use super::projection::{CameraView, columns, single, vector};
 use crate::world::{Aabb, look_at};
 
 /// A fitted view.
@@ -52,7 +52,7 @@ pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, te
         position: vector(right * middle[0] + up * middle[1] + back * scene.nearest),
         near: 0.0,
         forward: vector(-back),
-        far: range as f32,
+        far: single(range),
     };
     SunView { table, texel_size: size[0].max(size[1]), depth_range: range }
 }

@@ -6,12 +6,12 @@ use std::path::{Path, PathBuf};
 use bevy_ecs::prelude::World;
 use luminaire_graph::diagnostic::{Diagnostic, has_errors};
 use luminaire_graph::source::SourceMap;
+use luminaire_graph::syntax::read_document;
 use luminaire_graph::syntax::spanned::Spanned;
 
 use super::checked::check;
 use super::checks::Problems;
 use super::document::SceneDoc;
-use super::parse::parse;
 use super::spawn;
 use crate::gltf;
 use crate::world::{new_world, spawn_stored, store_asset};
@@ -61,7 +61,7 @@ pub fn load_scene_text(name: &str, text: &str, sources: &mut SourceMap) -> Resul
 /// The steps from text to world. `place` is the scene file's folder and the folder that files may come from.
 fn load(name: &str, text: &str, place: Option<(&Path, Option<&Path>)>, sources: &mut SourceMap) -> Result<LoadedScene, Vec<Diagnostic>> {
     let file = sources.add(name, text);
-    let document: SceneDoc = parse(text, file)?;
+    let document: SceneDoc = read_document(text, file)?;
     let mut problems = Problems::default();
     let checked = check(&document, &mut problems);
     let mut world = new_world();

@@ -23,7 +23,6 @@ mod checked;
 mod checks;
 mod document;
 mod load;
-mod parse;
 mod spawn;
 
 #[cfg(test)]
