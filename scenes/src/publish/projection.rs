@@ -24,7 +24,7 @@ impl CameraView {
         match pose.projection {
             Projection::Perspective { yfov, near, .. } => {
                 let near = positive(near, 0.01);
-                let half_y = (f64::from(yfov).clamp(1e-3, 3.14) * 0.5).tan();
+                let half_y = (f64::from(yfov).clamp(1e-3, 3.1) * 0.5).tan();
                 let half = [half_y * aspect, half_y];
                 // Depth is near / distance.
                 let projection_from_view = DMat4::from_cols(
