@@ -128,7 +128,7 @@ impl Session {
             Executor::new(&gpu, Arc::clone(&plan), &published, Arc::new(scene))
         });
         match made {
-            Ok(executor) => Ok(Session { plan, adapter: adapter.name(), warnings: (diagnostics, sources), executor }),
+            Ok(executor) => Ok(Session { plan, adapter: adapter.name().to_owned(), warnings: (diagnostics, sources), executor }),
             Err(problems) => {
                 diagnostics.extend(problems);
                 debug_assert!(has_errors(&diagnostics));

@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &PlanArguments) -> bool {
             let sources: &SourceMap = &compilation.sources;
             let text = match arguments.format {
                 PlanFormat::Text => dump::text(&plan, sources),
-                PlanFormat::Json => dump::json(&plan, sources),
+                PlanFormat::Json => format!("{:#}\n", dump::json(&plan, sources)),
                 PlanFormat::Dot => dump::dot(&plan),
             };
             print(&text) && fine

@@ -7,7 +7,7 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use super::layout::ViewTable;
-use super::projection::{columns, vector};
+use super::projection::{columns, single, vector};
 use crate::world::Aabb;
 
 /// Right, up and forward of each face: +X -X +Y -Y +Z -Z. From Vulkan's table: right is `s`, down is `t`.
@@ -43,9 +43,9 @@ pub(super) fn face_view(position: DVec3, [near, far]: [f64; 2], face: u32) -> Vi
     ViewTable {
         projection_from_world: columns(projection_from_world),
         position: vector(position),
-        near: near as f32,
+        near: single(near),
         forward: vector(forward),
-        far: far as f32,
+        far: single(far),
     }
 }
 

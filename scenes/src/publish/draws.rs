@@ -13,6 +13,9 @@ use super::geometry::MeshRange;
 use super::objects::{Coverage, Object};
 use super::projection::CameraView;
 
+/// A list as it is published.
+pub(super) type DrawList = (DrawFilter, ViewKind, Vec<DrawBatch>);
+
 /// How far an object is from a view.
 #[derive(Debug, Clone, Copy)]
 pub(super) enum Distance {
@@ -42,7 +45,7 @@ pub(super) fn build(
     ranges: &[MeshRange],
     wanted: &[(DrawFilter, ViewKind)],
     distance: impl Fn(ViewKind) -> Distance,
-) -> (Vec<(DrawFilter, ViewKind, Vec<DrawBatch>)>, Vec<u32>) {
+) -> (Vec<DrawList>, Vec<u32>) {
     let mut slots = Vec::new();
     // Sorted by nothing but material and mesh, a list is the same from everywhere.
     let mut shared: BTreeMap<DrawFilter, Vec<DrawBatch>> = BTreeMap::new();

@@ -7,7 +7,7 @@ use glam::{DVec3, Vec3};
 use luminaire_graph::published::{ViewKind, ViewRequest};
 
 use super::layout::{DirectionalRow, LocalRow};
-use super::projection::{CameraView, vector};
+use super::projection::{CameraView, single, vector};
 use super::{cube, sun};
 use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, GlobalTransform, LocalLight, LocalSlot, rigid_axes};
 
@@ -89,8 +89,8 @@ impl Lights {
             let wanted = |view: &&ViewRequest| matches!(view.kind, ViewKind::DirectionalLight(light) if light as usize == index);
             if let Some(view) = views.iter().find(wanted) {
                 let fitted = sun::fit(sun.to_light, camera, bounds, [view.width, view.height]);
-                row.shadow_texel_size = fitted.texel_size as f32;
-                row.shadow_depth_range = fitted.depth_range as f32;
+                row.shadow_texel_size = single(fitted.texel_size);
+                row.shadow_depth_range = single(fitted.depth_range);
                 row.shadow_from_world = fitted.table.projection_from_world;
             }
             row
@@ -108,9 +108,9 @@ impl Lights {
                 position: vector(lamp.position),
                 range: lamp.range.unwrap_or(0.0),
                 intensity: lamp.intensity.to_array(),
-                shadow_near: near as f32,
+                shadow_near: single(near),
                 direction: vector(lamp.axis),
-                shadow_far: far as f32,
+                shadow_far: single(far),
                 spot_scale,
                 spot_offset,
                 pad: [0.0; 2],

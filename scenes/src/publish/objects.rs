@@ -99,20 +99,25 @@ fn determinant(transform: Affine3A) -> f64 {
     a.dot(b.cross(c))
 }
 
-/// Columns of the inverse transpose. It is the cofactor matrix over the determinant; where that leaves f32, the cofactor matrix
-/// scaled to 1 (for a transform that flattens to a plane, the plane's normal, and shaders normalise anyway); where that is zero, too,
-/// since everything collapses to a line or a point, the identity.
+/// Columns of the inverse transpose. It is the cofactor matrix over the determinant; where that is too large or too small for a
+/// shader to normalise, the cofactor matrix scaled to 1 (for a transform that flattens to a plane, the plane's normal); where that is
+/// zero, too, since everything collapses to a line or a point, the identity.
 pub(super) fn normal_columns(transform: Affine3A) -> [Vec3; 3] {
     let [a, b, c] = columns(transform);
     let cofactors = [b.cross(c), c.cross(a), a.cross(b)];
     let determinant = a.dot(cofactors[0]);
-    let exact = cofactors.map(|column| (column / determinant).as_vec3());
-    if determinant != 0.0 && exact.iter().all(|column| column.is_finite() && *column != Vec3::ZERO) {
-        return exact;
+    let largest = |columns: [DVec3; 3]| columns.map(|column| column.abs().max_element()).into_iter().fold(0.0, f64::max);
+    let exact = cofactors.map(|column| column / determinant);
+    if exact.iter().all(|column| column.is_finite()) && (1e-15..=1e15).contains(&largest(exact)) {
+        return exact.map(|column| column.as_vec3());
     }
-    let largest = cofactors.iter().map(|column| column.abs().max_element()).fold(0.0, f64::max);
-    let scaled = cofactors.map(|column| (column / largest * if determinant < 0.0 { -1.0 } else { 1.0 }).as_vec3());
-    if largest > 0.0 && scaled.iter().all(|column| column.is_finite()) { scaled } else { [Vec3::X, Vec3::Y, Vec3::Z] }
+    let size = largest(cofactors);
+    let scaled = cofactors.map(|column| column / if determinant < 0.0 { -size } else { size });
+    if size > 0.0 && scaled.iter().all(|column| column.is_finite()) {
+        scaled.map(|column| column.as_vec3())
+    } else {
+        [Vec3::X, Vec3::Y, Vec3::Z]
+    }
 }
 
 #[cfg(test)]

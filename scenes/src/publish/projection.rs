@@ -24,7 +24,7 @@ impl CameraView {
         match pose.projection {
             Projection::Perspective { yfov, near, .. } => {
                 let near = positive(near, 0.01);
-                let half_y = (f64::from(yfov).clamp(1e-3, 3.14) * 0.5).tan();
+                let half_y = (f64::from(yfov).clamp(1e-3, 3.1) * 0.5).tan();
                 let half = [half_y * aspect, half_y];
                 // Depth is near / distance.
                 let projection_from_view = DMat4::from_cols(
@@ -91,7 +91,7 @@ impl CameraView {
             position: table.position,
             near: table.near,
             forward: table.forward,
-            far: self.far().map_or(0.0, |far| far as f32),
+            far: self.far().map_or(0.0, single),
         }
     }
 }
@@ -111,6 +111,11 @@ pub(super) fn view_from_world(right: DVec3, up: DVec3, back: DVec3, position: DV
 /// Column-major, as shaders read it.
 pub(super) fn columns(matrix: DMat4) -> Columns {
     matrix.as_mat4().to_cols_array_2d()
+}
+
+/// In f32, and finite.
+pub(super) fn single(value: f64) -> f32 {
+    (value as f32).clamp(f32::MIN, f32::MAX)
 }
 
 /// In f32.

@@ -9,7 +9,7 @@
 use glam::{DMat4, DVec3, DVec4};
 
 use super::layout::ViewTable;
-use super::projection::{CameraView, columns, vector};
+use super::projection::{CameraView, columns, single, vector};
 use crate::world::{Aabb, look_at};
 
 /// A fitted view.
@@ -52,7 +52,7 @@ pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, te
         position: vector(right * middle[0] + up * middle[1] + back * scene.nearest),
         near: 0.0,
         forward: vector(-back),
-        far: range as f32,
+        far: single(range),
     };
     SunView { table, texel_size: size[0].max(size[1]), depth_range: range }
 }
@@ -75,9 +75,10 @@ impl LightBounds {
             (along.iter().copied().fold(f64::INFINITY, f64::min), along.iter().copied().fold(f64::NEG_INFINITY, f64::max))
         };
         let [x, y, z] = [right, up, back].map(extent);
-        // Room for rounding, and something to divide by in a flat or empty scene.
-        let margin = 1e-3 * (z.1 - z.0) + 1e-2;
-        let half = (0.5 * (x.1 - x.0).max(y.1 - y.0) * 1.001).max(1e-3);
+        // Room for rounding, which grows with the distance from the origin, and something to divide by in a flat or empty scene.
+        let rounding = |range: (f64, f64)| 1e-6 * range.0.abs().max(range.1.abs());
+        let margin = 1e-3 * (z.1 - z.0) + 1e-2 + rounding(z);
+        let half = (0.5 * (x.1 - x.0).max(y.1 - y.0) * 1.001).max(1e-3) + rounding(x).max(rounding(y));
         LightBounds { middle: [0.5 * (x.0 + x.1), 0.5 * (y.0 + y.1)], half, nearest: z.1 + margin, farthest: z.0 - margin }
     }
 }

@@ -1,1 +1,227 @@
 //! Tests of publishing as a whole.
+
+use glam::{Affine3A, Mat4, Quat, Vec3};
+use luminaire_graph::published::{DrawBatch, DrawFilter, TableKind, ViewKind, ViewRequest};
+
+use super::*;
+use crate::asset::{AlphaMode, Material, Projection};
+use crate::primitive::{cuboid, sphere};
+use crate::world::{Camera, DirectionalLight, LocalLight, MeshInstance, Name, Transform, new_world, set_translation};
+
+const CAMERA_VIEW: ViewRequest = ViewRequest { kind: ViewKind::Camera, width: 64, height: 48 };
+const SUN_VIEW: ViewRequest = ViewRequest { kind: ViewKind::DirectionalLight(0), width: 512, height: 512 };
+
+fn request<'a>(views: &'a [ViewRequest], draw_lists: &'a [(DrawFilter, ViewKind)]) -> PublishRequest<'a> {
+    PublishRequest { camera: None, extent: [64, 48], views, draw_lists, max_texture_2d: 8192 }
+}
+
+/// A camera at (0, 0, 5) that looks along -z, a sun from above, and a lamp. Materials: 0 and 1 opaque, 2 masked and double
+/// sided, 3 blended. Meshes: 0 box, 1 sphere.
+fn stage() -> World {
+    let mut world = new_world();
+    let masked = Material { alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, double_sided: true, ..Material::default() };
+    let blended = Material { alpha_mode: AlphaMode::Blend, ..Material::default() };
+    world.resource_mut::<Materials>().0 = vec![Material::default(), Material::default(), masked, blended];
+    world.resource_mut::<Meshes>().0 = vec![cuboid("box", Vec3::ONE, 0), sphere("ball", 0.5, 8, 4, 0)];
+    let projection = Projection::Perspective { yfov: 0.8, near: 0.1, far: None };
+    world.spawn((Transform(Affine3A::from_translation(Vec3::Z * 5.0)), Camera { name: "main".to_owned(), projection, ev100: None }));
+    let down = Affine3A::from_rotation_x(-std::f32::consts::FRAC_PI_2);
+    world.spawn((Transform(down), DirectionalLight { color: Vec3::ONE, illuminance: 100_000.0 }));
+    let lamp = LocalLight { color: Vec3::ONE, intensity: 10.0, range: None, cone: None };
+    world.spawn((Transform(Affine3A::from_translation(Vec3::Y * 3.0)), lamp));
+    world
+}
+
+fn place(world: &mut World, mesh: usize, material: usize, at: Vec3, scale: Vec3) {
+    let transform = Affine3A::from_scale_rotation_translation(scale, Quat::IDENTITY, at);
+    world.spawn((Transform(transform), MeshInstance { mesh, material }));
+}
+
+fn slots(published: &Published, batch: &DrawBatch) -> Vec<u32> {
+    let table: &[u32] = bytemuck::cast_slice(&published.scene.tables["instance_slots"]);
+    table[batch.first_instance as usize..][..batch.instance_count as usize].to_vec()
+}
+
+fn crowd() -> World {
+    let mut world = stage();
+    place(&mut world, 0, 1, Vec3::ZERO, Vec3::ONE);
+    place(&mut world, 1, 0, Vec3::X, Vec3::ONE);
+    place(&mut world, 0, 0, Vec3::Y, Vec3::ONE);
+    place(&mut world, 0, 0, Vec3::NEG_X, Vec3::new(-1.0, 1.0, 1.0));
+    place(&mut world, 0, 0, Vec3::NEG_Y, Vec3::ONE);
+    place(&mut world, 1, 2, Vec3::ZERO, Vec3::ONE);
+    place(&mut world, 0, 3, Vec3::new(0.0, 0.0, 1.0), Vec3::ONE);
+    place(&mut world, 0, 3, Vec3::new(0.0, 0.0, -3.0), Vec3::ONE);
+    place(&mut world, 1, 3, Vec3::new(0.0, 0.0, -1.0), Vec3::ONE);
+    place(&mut world, 0, 3, Vec3::new(0.0, 0.0, 2.0), Vec3::ONE);
+    world
+}
+
+#[test]
+fn solid_objects_share_a_call_per_material_mesh_and_orientation() {
+    let mut world = crowd();
+    let published = publish(&mut world, &request(&[], &[(DrawFilter::Solid, ViewKind::Camera)])).unwrap();
+    let batches = &published.scene.draw_lists[0].2;
+    let seen: Vec<(usize, u32, bool, bool, Vec<u32>)> = batches
+        .iter()
+        .map(|batch| (batch.material, batch.first_index, batch.mirrored, batch.double_sided, slots(&published, batch)))
+        .collect();
+    let expected = [
+        (0, 0, false, false, vec![2, 4]),
+        (0, 0, true, false, vec![3]),
+        (0, 36, false, false, vec![1]),
+        (1, 0, false, false, vec![0]),
+        (2, 36, false, true, vec![5]),
+    ];
+    assert_eq!(seen, expected);
+    assert_eq!(batches[2].base_vertex, 24);
+}
+
+#[test]
+fn blended_objects_go_back_to_front_from_their_view() {
+    let mut world = crowd();
+    let lists =
+        [(DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, ViewKind::LocalLight(0, 2)), (DrawFilter::Opaque, ViewKind::Camera)];
+    let published = publish(&mut world, &request(&[], &lists)).unwrap();
+    let order =
+        |list: usize| -> Vec<u32> { published.scene.draw_lists[list].2.iter().flat_map(|batch| slots(&published, batch)).collect() };
+    assert_eq!(order(0), [7, 8, 6, 9]);
+    assert_eq!(published.scene.draw_lists[0].2.len(), 3, "neighbours that agree share a call");
+    // The lamp stands at (0, 3, 0); ties go by slot.
+    assert_eq!(order(1)[6..], [7, 9, 6, 8]);
+    assert_eq!(order(2), [2, 4, 3, 1, 0]);
+    assert!(published.scene.draw_lists[1].2.iter().all(|batch| batch.mirrored != slots(&published, batch).contains(&3)));
+}
+
+#[test]
+fn tables_fit_the_schema_and_follow_slots() {
+    let mut world = crowd();
+    let published = publish(&mut world, &request(&[CAMERA_VIEW, SUN_VIEW], &[])).unwrap();
+    for (name, table) in schema().tables {
+        match table.kind {
+            TableKind::View => assert!(published.scene.views.iter().all(|view| view.len() == table.stride as usize)),
+            TableKind::Uniform => assert_eq!(published.scene.tables[&name].len(), table.stride as usize, "{name}"),
+            TableKind::Storage => {
+                let bytes = published.scene.tables[&name].len();
+                assert!(bytes > 0 && bytes.is_multiple_of(table.stride as usize), "{name}");
+            }
+        }
+    }
+    let rows: &[InstanceRow] = bytemuck::cast_slice(&published.scene.tables["instances"]);
+    assert_eq!(rows.len(), 10);
+    assert_eq!((rows[3].normal_from_object_0[3], rows[3].object, rows[5].material), (-1.0, 3, 2));
+    let environment: &[EnvironmentTable] = bytemuck::cast_slice(&published.scene.tables["environment"]);
+    assert_eq!((environment[0].light_unit, environment[0].directional_count, environment[0].local_count), (32.0, 1, 1));
+    let suns: &[DirectionalRow] = bytemuck::cast_slice(&published.scene.tables["directional_lights"]);
+    let view: &ViewTable = bytemuck::from_bytes(&published.scene.views[1]);
+    assert_eq!(suns[0].shadow_from_world, view.projection_from_world);
+    assert!((suns[0].shadow_depth_range - view.far).abs() < 1e-6 && suns[0].shadow_texel_size > 0.0);
+    assert!(Vec3::from(suns[0].direction_to_light).distance(Vec3::Y) < 1e-6);
+}
+
+#[test]
+fn a_light_without_a_shadow_view_has_zeros_there() {
+    let published = publish(&mut stage(), &request(&[], &[])).unwrap();
+    let suns: &[DirectionalRow] = bytemuck::cast_slice(&published.scene.tables["directional_lights"]);
+    assert_eq!((suns[0].shadow_texel_size, suns[0].shadow_from_world), (0.0, [[0.0; 4]; 4]));
+}
+
+#[test]
+fn cube_views_reach_what_their_light_shines_on() {
+    let mut world = crowd();
+    let views: Vec<ViewRequest> = (0..6).map(|face| ViewRequest { kind: ViewKind::LocalLight(0, face), width: 64, height: 64 }).collect();
+    let published = publish(&mut world, &request(&views, &[])).unwrap();
+    let lamps: &[LocalRow] = bytemuck::cast_slice(&published.scene.tables["local_lights"]);
+    let down: &ViewTable = bytemuck::from_bytes(&published.scene.views[3]);
+    assert_eq!((lamps[0].shadow_near, lamps[0].shadow_far), (down.near, down.far));
+    let at_origin = Mat4::from_cols_array_2d(&down.projection_from_world).project_point3(Vec3::ZERO);
+    assert!(at_origin.x.abs() < 1e-5 && at_origin.y.abs() < 1e-5 && (0.0..1.0).contains(&at_origin.z));
+}
+
+#[test]
+fn equal_worlds_publish_equal_bytes_and_a_second_time_changes_nothing() {
+    let lists = [(DrawFilter::All, ViewKind::Camera)];
+    let wanted = request(&[CAMERA_VIEW, SUN_VIEW], &lists);
+    let dump = |published: Published| format!("{:?}", published.scene);
+    let mut world = crowd();
+    let first = dump(publish(&mut world, &wanted).unwrap());
+    assert_eq!(first, dump(publish(&mut world, &wanted).unwrap()));
+    assert_eq!(first, dump(publish(&mut crowd(), &wanted).unwrap()));
+}
+
+#[test]
+fn textures_follow_changes_of_materials() {
+    let mut world = stage();
+    assert_eq!(publish(&mut world, &request(&[], &[])).unwrap().scene.materials.len(), 4);
+    world.resource_mut::<Materials>().0.push(Material::default());
+    assert_eq!(publish(&mut world, &request(&[], &[])).unwrap().scene.materials.len(), 5);
+}
+
+#[test]
+fn moving_a_node_moves_its_row() {
+    let mut world = stage();
+    world.spawn((Name::new("moving_box"), Transform::default(), MeshInstance { mesh: 0, material: 0 }));
+    publish(&mut world, &request(&[], &[])).unwrap();
+    set_translation(&mut world, "moving_box", Vec3::new(-1.6, 0.6, -1.4)).unwrap();
+    let published = publish(&mut world, &request(&[], &[])).unwrap();
+    let rows: &[InstanceRow] = bytemuck::cast_slice(&published.scene.tables["instances"]);
+    assert_eq!(rows[0].world_from_object[3], [-1.6, 0.6, -1.4, 1.0]);
+}
+
+#[test]
+fn an_empty_world_publishes_without_nan() {
+    let published = publish(&mut new_world(), &request(&[CAMERA_VIEW], &[(DrawFilter::All, ViewKind::Camera)])).unwrap();
+    assert!(published.scene.tables.values().all(|table| !table.is_empty()));
+    assert!(published.scene.draw_lists[0].2.is_empty());
+    let camera: &CameraTable = bytemuck::from_bytes(&published.scene.tables["camera"]);
+    assert!(Mat4::from_cols_array_2d(&camera.world_from_projection).is_finite() && camera.exposure == 1.0);
+    assert!(counts(&new_world()).values().all(|count| *count == 0));
+}
+
+#[test]
+fn degenerate_worlds_publish_finite_numbers() {
+    let transforms = [
+        Affine3A::from_scale(Vec3::ZERO),
+        Affine3A::from_scale(Vec3::splat(1e30)),
+        Affine3A::from_scale(Vec3::splat(f32::MAX)),
+        Affine3A::from_translation(Vec3::splat(1e37)),
+        Affine3A::from_scale(Vec3::splat(f32::NAN)),
+        Affine3A::from_translation(Vec3::splat(f32::INFINITY)),
+    ];
+    let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::LocalLight(1, 5), width: 8, height: 8 }];
+    for transform in transforms {
+        let mut world = stage();
+        let lamp = LocalLight { color: Vec3::ONE, intensity: f32::INFINITY, range: Some(f32::NAN), cone: None };
+        world.spawn((Transform(transform), lamp));
+        world.spawn((Transform(transform), MeshInstance { mesh: 0, material: 3 }));
+        let published = publish(&mut world, &request(&views, &[(DrawFilter::All, ViewKind::LocalLight(1, 0))])).unwrap();
+        for (name, table) in published.scene.tables.iter().filter(|(name, _)| *name != "instance_slots") {
+            let numbers: &[f32] = bytemuck::cast_slice(table);
+            assert!(numbers.iter().all(|number| !number.is_nan()), "{name} of {transform:?}");
+        }
+        for view in &published.scene.views {
+            let numbers: &[f32] = bytemuck::cast_slice(view);
+            assert!(numbers.iter().all(|number| !number.is_nan()), "a view of {transform:?}");
+        }
+    }
+}
+
+#[test]
+fn what_is_not_there_is_reported_at_once() {
+    let views =
+        [ViewRequest { kind: ViewKind::DirectionalLight(3), ..SUN_VIEW }, ViewRequest { kind: ViewKind::LocalLight(0, 6), ..SUN_VIEW }];
+    let wanted = PublishRequest { camera: Some("mian"), ..request(&views, &[(DrawFilter::All, ViewKind::LocalLight(9, 0))]) };
+    let problems = publish(&mut stage(), &wanted).unwrap_err();
+    let codes: Vec<&str> = problems.iter().map(|problem| problem.code).collect();
+    assert_eq!(codes, ["publish::unknown-light", "publish::unknown-face", "publish::unknown-light", "world::unknown-camera"]);
+    assert_eq!(problems[3].hint.as_deref(), Some("did you mean `main`?"));
+}
+
+#[test]
+fn counts_are_rows_of_lights_and_instances_of_surfaces() {
+    let mut world = crowd();
+    publish(&mut world, &request(&[], &[])).unwrap();
+    let counts: Vec<(String, u32)> = counts(&world).into_iter().collect();
+    let expected = [1, 1, 0, 1, 5, 1, 4];
+    assert_eq!(counts, COUNT_NAMES.iter().zip(expected).map(|(name, count)| ((*name).to_owned(), count)).collect::<Vec<_>>());
+}

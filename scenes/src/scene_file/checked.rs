@@ -1,6 +1,6 @@
 //! From a document to checked parts of a scene: names resolved, numbers in range, angles in radians.
 
-use glam::{Affine3A, DVec3, Mat3, Vec2, Vec3};
+use glam::{Affine3A, Mat3, Vec2, Vec3};
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 use luminaire_graph::source::Span;
 use luminaire_graph::syntax::spanned::Spanned;
@@ -243,6 +243,6 @@ fn light(of: &str, entry: &LightDoc, problems: &mut Problems) -> (Light, Affine3
 
 /// The transform of something at `position` that looks along `forward`.
 fn facing(position: Vec3, forward: Vec3) -> Affine3A {
-    let (right, up, back) = look_at(DVec3::from(forward.as_dvec3()));
+    let (right, up, back) = look_at(forward.as_dvec3());
     Affine3A::from_mat3_translation(Mat3::from_cols(right.as_vec3(), up.as_vec3(), back.as_vec3()), position)
 }

@@ -22,7 +22,7 @@ impl Problems {
         self.0.push(diagnostic);
     }
 
-    fn out_of_range(&mut self, what: &str, shown: String, span: Span, range: &RangeInclusive<f32>) {
+    fn out_of_range(&mut self, what: &str, shown: &str, span: Span, range: &RangeInclusive<f32>) {
         self.add(
             Diagnostic::error("scene::bad-number", format!("{what} is {shown}"))
                 .at(span, format!("must lie between {} and {}", range.start(), range.end())),
@@ -35,7 +35,7 @@ impl Problems {
         if range.contains(&number.value) {
             return number.value;
         }
-        self.out_of_range(what, number.value.to_string(), number.span, &range);
+        self.out_of_range(what, &number.value.to_string(), number.span, &range);
         default
     }
 
@@ -46,7 +46,7 @@ impl Problems {
         if [x, y, z].iter().all(|component| range.contains(component)) {
             return Vec3::new(x, y, z);
         }
-        self.out_of_range(what, format!("({x}, {y}, {z})"), vector.span, &range);
+        self.out_of_range(what, &format!("({x}, {y}, {z})"), vector.span, &range);
         default
     }
 

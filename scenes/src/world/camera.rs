@@ -54,7 +54,7 @@ pub fn camera_pose(world: &mut World, name: Option<&str>, bounds: Option<Aabb>, 
     let transform = world.get::<GlobalTransform>(entity).map_or(Affine3A::IDENTITY, |transform| transform.0);
     let Some(camera) = world.get::<Camera>(entity) else { return Ok(framing_camera(bounds, aspect)) };
     let (right, up, back) = rigid_axes(transform.matrix3);
-    let position = DVec3::from(transform.translation.as_dvec3());
+    let position = transform.translation.as_dvec3();
     let position = if position.is_finite() { position } else { DVec3::ZERO };
     Ok(CameraPose { position, right, up, back, projection: camera.projection, ev100: camera.ev100 })
 }

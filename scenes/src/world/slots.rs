@@ -24,14 +24,12 @@ fn assign<Kind: Component, Slot: Component>(world: &mut World, make: fn(u32) -> 
     let mut held: Vec<u32> = world.query::<&Slot>().iter(world).map(index).collect();
     held.sort_unstable();
     let mut held = held.into_iter().peekable();
-    let mut next = 0;
-    for entity in waiting {
-        while held.next_if(|slot| *slot <= next).is_some_and(|slot| {
-            next = slot + 1;
-            true
-        }) {}
-        world.entity_mut(entity).insert(make(next));
-        next += 1;
+    let free = (0..u32::MAX).filter(|slot| {
+        while held.next_if(|taken| taken < slot).is_some() {}
+        held.peek() != Some(slot)
+    });
+    for (entity, slot) in waiting.into_iter().zip(free) {
+        world.entity_mut(entity).insert(make(slot));
     }
 }
 
