@@ -36,7 +36,7 @@ fn every_break_is_found() {
     let index = |plan: &Plan, name: &str| plan.resources.iter().position(|resource| resource.name == name).unwrap();
     breaks("a lifetime that is too short", |plan| plan.resources[0].lifetime.end -= 1);
     breaks("bytes that are wrong", |plan| plan.resources[0].bytes += 4);
-    breaks("a memory that is too small", |plan| plan.memories.iter_mut().for_each(|memory| memory.bytes -= 256));
+    breaks("a memory that is too small", |plan| plan.memories.iter_mut().for_each(|memory| memory.bytes /= 2));
     breaks("an offset that is not aligned", |plan| {
         let d = index(plan, "d");
         plan.resources[d].placement.as_mut().unwrap().offset += 4;
