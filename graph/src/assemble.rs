@@ -41,7 +41,8 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
         })
         .collect();
     let mut resources = Vec::with_capacity(expanded.resources.len());
-    for (index, resource) in expanded.resources.into_iter().enumerate() {
+    let spans = lifetimes.ranges.into_iter().zip(lifetimes.retained);
+    for (index, (resource, (lifetime, retained))) in expanded.resources.into_iter().zip(spans).enumerate() {
         let chosen = formats.get(index).copied().flatten();
         let shape = match resource.shape {
             Shape::Buffer { .. } => PlannedShape::Buffer(allocation.bytes[index]),
@@ -62,9 +63,9 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
             shape,
             usage: allocation.usages[index],
             bytes: allocation.bytes[index],
-            lifetime: lifetimes.ranges[index].clone(),
+            lifetime,
             placement: allocation.placements[index],
-            retained: lifetimes.retained[index],
+            retained,
             alone: allocation.alone[index],
         });
     }

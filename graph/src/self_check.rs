@@ -232,7 +232,7 @@ fn figures(plan: &Plan) -> Vec<String> {
             PlannedShape::Buffer(bytes) => bytes.div_ceil(ARENA_ALIGNMENT) * ARENA_ALIGNMENT,
         };
         without_sharing = without_sharing.saturating_add(bytes);
-        for step in &mut live[resource.lifetime.clone()] {
+        for step in live.get_mut(resource.lifetime.clone()).into_iter().flatten() {
             *step = step.saturating_add(bytes);
         }
     }

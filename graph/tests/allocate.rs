@@ -1,4 +1,5 @@
 //! Named cases of memory: what shares, what does not and why, and what limits say.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
 

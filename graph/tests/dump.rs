@@ -1,4 +1,5 @@
 //! The dumps of one small pipeline, byte for byte. `BLESS=1` writes what is expected anew.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
 

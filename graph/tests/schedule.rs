@@ -1,4 +1,5 @@
 //! Named cases of scheduling: what each error says, and what order, culling and clears come to.
+#![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
 
@@ -286,4 +287,33 @@ fn branches_run_one_after_the_other() {
     text += &format!("{level_a}{level_b}{level_c}{gather}\noutput color sum");
     let figures = fixture(&text).plan().figures;
     assert!(figures.reached * 10 < figures.declared_bound, "{figures:?}");
+}
+
+/// Two hundred writers of a part each and two hundred readers of the whole.
+fn many_to_many(tail: &str) -> support::Fixture {
+    let mut text = "texture x rgba8unorm 8x8 layers 200\ntexture sum rgba8unorm 8x8\n".to_owned();
+    let mut gather = "pass gather write sum".to_owned();
+    for index in 0..200 {
+        text += &format!("texture y{index} rgba8unorm 8x8\npass read{index} read x write y{index}\n");
+        gather += &format!(" read y{index}");
+    }
+    for index in 0..199 {
+        text += &format!("pass make{index} write x.layer({index})\n");
+    }
+    fixture(&format!("{text}{gather}\n{tail}output color sum"))
+}
+
+#[test]
+fn many_readers_of_many_writers() {
+    let order = many_to_many("pass last write x.layer(199)\n").order();
+    assert_eq!(order.len(), 401);
+    let place = |name: &str| order.iter().position(|pass| pass == name).unwrap();
+    assert!((0..200).all(|reader| place("last") < place(&format!("read{reader}"))));
+}
+
+#[test]
+fn cycle_through_many_readers_of_many_writers_names_passes_alone() {
+    let problems = many_to_many("pass last write x.layer(199) read y7\n").problems();
+    assert!(problems.contains("passes wait for each other: `read7` -> `last` -> `read7`"), "{problems}");
+    assert!(problems.contains("`read7` needs `x` from `last`"), "{problems}");
 }

@@ -39,13 +39,13 @@ pub(crate) fn peak(model: &Model, ranges: &[Range<usize>]) -> u64 {
 
 /// What byte-placed memory would take in this order: size-descending best fit, 64 KiB aligned.
 pub(crate) fn placed(model: &Model, ranges: &[Range<usize>]) -> u64 {
+    let units = |index: usize| round_up(model.charged[index], PLACED_ALIGNMENT).unwrap_or(u64::MAX);
     let mut order: Vec<usize> = transients(model, ranges).collect();
-    order.sort_unstable_by_key(|index| (Reverse(model.charged[*index]), Reverse(ranges[*index].len()), ranges[*index].start, *index));
+    order.sort_unstable_by_key(|index| (Reverse(units(*index)), Reverse(ranges[*index].len()), ranges[*index].start, *index));
     let mut strip = Strip::new(order.iter().map(|index| ranges[*index].end).max().unwrap_or(0));
     for index in order {
-        let bytes = round_up(model.charged[index], PLACED_ALIGNMENT).unwrap_or(u64::MAX);
-        let fit = strip.fit(&ranges[index], bytes);
-        strip.insert(&ranges[index], fit.offset, bytes);
+        let fit = strip.fit(&ranges[index], units(index));
+        strip.insert(&ranges[index], fit.offset, units(index));
     }
     strip.size()
 }

@@ -194,11 +194,12 @@ impl<'a> Greedy<'a> {
                 waiting.remove(&pass.0);
             }
             let began = !std::mem::replace(&mut self.in_use[resource], true);
-            if began && model.is_transient(resource) {
-                if let Pool::Texture(descriptor) = model.pools[resource] {
-                    let free = &mut self.free[descriptor as usize];
-                    *free = free.saturating_sub(1);
-                }
+            if began
+                && model.is_transient(resource)
+                && let Pool::Texture(descriptor) = model.pools[resource]
+            {
+                let free = &mut self.free[descriptor as usize];
+                *free = free.saturating_sub(1);
             }
             self.left[resource] -= 1;
             if began || self.left[resource] == 1 {

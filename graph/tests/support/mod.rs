@@ -8,7 +8,7 @@
 //! ```
 //!
 //! A part is `name`, `name.mip(1)`, `name.layer(2)`, each with `@pass` for a version. Places point into the notation.
-#![allow(dead_code, unreachable_pub)]
+#![allow(dead_code, unreachable_pub, clippy::unwrap_used, clippy::expect_used, clippy::panic)]
 
 use luminaire_graph::allocate::{Allocation, allocate};
 use luminaire_graph::assemble::assemble;
