@@ -206,9 +206,11 @@ impl Problems {
         self.stopped = true;
     }
 
-    /// Drops what was reported from a place on.
-    pub(super) fn forget_from(&mut self, place: Span) {
-        self.found.retain(|problem| problem.primary.as_ref().is_none_or(|label| label.span < place));
+    /// Keeps a problem in place of all that were reported from `from` on, and no other from here on.
+    pub(super) fn replace_from(&mut self, from: Span, span: Span, error: &SyntaxError) {
+        self.found.retain(|problem| problem.primary.as_ref().is_none_or(|label| label.span < from));
+        self.stopped = false;
+        self.report_last(span, error);
     }
 
     /// Whether nothing more is reported.

@@ -237,7 +237,8 @@ impl<'a> Lexer<'a> {
                 break;
             }
             end = index + char.len_utf8();
-            previous = char;
+            // An underscore may stand between an exponent's letter and its sign.
+            previous = if char == '_' { previous } else { char };
         }
         // A sign or a dot alone is taken, too, so that reading goes on.
         self.position += end.max(1);

@@ -85,8 +85,7 @@ impl<'a> Parser<'a> {
         {
             let quote = self.lexer.problems.span(self.previous_end.saturating_sub(1), self.previous_end);
             let line = Span { end: self.lexer.line_end(string.start as usize) as u32, ..string };
-            self.lexer.problems.forget_from(string);
-            self.lexer.problems.report_last(line, &SyntaxError::RunawayString { end: quote });
+            self.lexer.problems.replace_from(string, line, &SyntaxError::RunawayString { end: quote });
         }
     }
 

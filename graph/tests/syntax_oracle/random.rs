@@ -71,8 +71,8 @@ fn any_text() -> impl Strategy<Value = String> {
         prop_oneof![
             values.clone().prop_map(|values| format!("[{values}]")),
             entries.prop_map(|entries| format!("{{{entries}}}")),
-            ("([A-Z][a-z]{0,3}/\\*\\*/)?", values).prop_map(|(name, values)| format!("{name}({values})")),
-            ("([A-Z][a-z]{0,3} ?)?", fields).prop_map(|(name, fields)| format!("{name}({fields})")),
+            ("([A-Z][a-z]{0,2}/\\*\\*/)?", values).prop_map(|(name, values)| format!("{name}({values})")),
+            ("([A-Z][a-z]{0,2} ?)?", fields).prop_map(|(name, fields)| format!("{name}({fields})")),
             inner.prop_map(|inner| format!("Some({inner})")),
         ]
     })
