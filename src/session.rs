@@ -8,9 +8,9 @@ use luminaire_graph::diagnostic::{Diagnostic, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats};
+use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
 use luminaire_scenes::scene_file;
 use luminaire_scenes::world::World;
-use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
 
 use crate::files::{DiskFiles, embedded_scene};
 use crate::image_file::LinearImage;

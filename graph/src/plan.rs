@@ -10,7 +10,7 @@ use crate::format::Format;
 use crate::published::{DrawFilter, ViewKind, ViewRequest};
 use crate::reflect::interface::{Shader, StorageAccess, ViewDimension};
 use crate::source::Span;
-use crate::syntax::document::{BlendDoc, CompareDoc, CullDoc};
+use crate::syntax::document::{BlendDoc, CompareDoc};
 
 /// A compiled pipeline.
 #[derive(Debug, Clone)]
@@ -219,7 +219,7 @@ pub enum StepKind {
         list: usize,
         /// Index into [`Plan::views`].
         view: usize,
-        cull: CullDoc,
+        cull: Cull,
         /// Attributes by location: names in the vertex schema.
         attributes: Vec<String>,
         targets: Targets,
@@ -241,6 +241,15 @@ pub enum StepKind {
         target: PartView,
         value: ClearValue,
     },
+}
+
+/// Which side of a triangle is left out.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[allow(missing_docs)]
+pub enum Cull {
+    None,
+    Front,
+    Back,
 }
 
 /// What a Draw or Fullscreen renders into.

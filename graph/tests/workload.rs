@@ -124,7 +124,7 @@ fn bound(json: &Json) -> Bound {
         .iter()
         .map(|resource| if let Shape::Texture(shape) = &resource.shape { shape.formats.first().copied() } else { None })
         .collect();
-    let expanded = Expanded { doc: String::new(), params: Vec::new(), resources, passes, outputs };
+    let expanded = Expanded { doc: String::new(), params: Vec::new(), resources, passes, outputs, offered: Vec::new() };
     Bound { expanded, shaders: Vec::new(), steps, formats, views: Vec::new(), draw_lists: Vec::new(), requirements: Vec::new() }
 }
 

@@ -6,9 +6,9 @@
 use std::ops::Range;
 
 use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{Plan, Step, StepKind};
 use luminaire_graph::published::{DrawBatch, MaterialBinding};
-use luminaire_graph::syntax::document::CullDoc;
 
 use crate::bind_groups::StepGroups;
 use crate::errors::Subject;
@@ -23,7 +23,7 @@ use crate::timing::{FrameCounts, Stamps};
 #[derive(Debug)]
 pub(crate) struct DrawStep {
     key: RenderKey,
-    cull: CullDoc,
+    cull: Cull,
     list: usize,
     groups: StepGroups,
     attachments: Attachments,
@@ -121,12 +121,12 @@ impl DrawStep {
 }
 
 /// The pipeline of a class of batches.
-fn variant(key: &RenderKey, cull: CullDoc, mirrored: bool, double_sided: bool) -> RenderKey {
+fn variant(key: &RenderKey, cull: Cull, mirrored: bool, double_sided: bool) -> RenderKey {
     let cull = match cull {
         _ if double_sided => None,
-        CullDoc::None => None,
-        CullDoc::Front => Some(wgpu::Face::Front),
-        CullDoc::Back => Some(wgpu::Face::Back),
+        Cull::None => None,
+        Cull::Front => Some(wgpu::Face::Front),
+        Cull::Back => Some(wgpu::Face::Back),
     };
     let front_face = if mirrored { wgpu::FrontFace::Cw } else { wgpu::FrontFace::Ccw };
     key.with_faces(front_face, cull)

@@ -65,5 +65,12 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
         }
     }
     let Environment { params, problems, .. } = environment;
-    if has_errors(&problems) { Err(problems) } else { Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, outputs }) }
+    if has_errors(&problems) {
+        Err(problems)
+    } else {
+        {
+            let offered = validated.outputs.iter().map(|(_, part)| part.resource).collect();
+            Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, outputs, offered })
+        }
+    }
 }

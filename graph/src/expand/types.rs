@@ -1,9 +1,10 @@
 //! The output of expansion: a flat list of passes over resources with known extents.
 
 use crate::format::Format;
+use crate::plan::Cull;
 use crate::published::{DrawFilter, ViewKind};
 use crate::source::Span;
-use crate::syntax::document::{BlendDoc, CullDoc, DepthDoc};
+use crate::syntax::document::{BlendDoc, DepthDoc};
 
 /// A resource of [`Expanded::resources`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -40,6 +41,8 @@ pub struct Expanded {
     pub passes: Vec<Pass>,
     /// The outputs asked for.
     pub outputs: Vec<Output>,
+    /// Resources that outputs name, whether asked for or not.
+    pub offered: Vec<ResourceId>,
 }
 
 /// A parameter with its value.
@@ -180,7 +183,7 @@ pub enum PassKind {
         objects: DrawFilter,
         view: ViewKind,
         depth: Option<DepthDoc>,
-        cull: CullDoc,
+        cull: Cull,
         blend: Vec<(Located<String>, BlendDoc)>,
     },
     Fullscreen {

@@ -207,6 +207,9 @@ fn reads_what_it_writes(bound: &Bound, step: &Step, found: &mut Vec<Diagnostic>)
 }
 
 fn unread(bound: &Bound, grid: &Grid, resource: &Resource, found: &mut Vec<Diagnostic>) {
+    if bound.expanded.offered.iter().any(|offered| bound.expanded.resources[offered.index()].name == resource.name) {
+        return;
+    }
     let Some(writer) = grid.cells.iter().find_map(|cell| cell.writers.first()) else { return };
     let mut writers = grid.cells.iter().flat_map(|cell| &cell.writers);
     // A depth buffer that is only tested against does its work without a reader.

@@ -254,7 +254,7 @@ pub enum CompareDoc {
 }
 
 /// Which side of a triangle is left out. Surfaces of double-sided materials are never culled; mirrored ones are handled.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
 pub enum CullDoc {
     /// Draw both sides.
     None,
@@ -263,6 +263,8 @@ pub enum CullDoc {
     /// Leave out the back.
     #[default]
     Back,
+    /// As a parameter says whose options are some of `none`, `front` and `back`.
+    Param(Text),
 }
 
 /// How a color output is combined with what is there.

@@ -3,11 +3,12 @@
 use super::error::ValidateError;
 use super::resources::plain_clear;
 use super::scope::Scope;
-use super::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
+use super::types::{Condition, CullDecl, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
 use crate::expand::types::Located;
+use crate::plan::Cull;
 use crate::published::DrawFilter;
 use crate::source::Span;
-use crate::syntax::document::{BlendDoc, EachDoc, Entries, Expr, ObjectsDoc, PassDoc, ResourceDoc, Text, ViewDoc};
+use crate::syntax::document::{BlendDoc, CullDoc, EachDoc, Entries, Expr, ObjectsDoc, PassDoc, ResourceDoc, Text, ViewDoc};
 
 /// Loops inside loops beyond this are refused.
 const MAX_LOOP_DEPTH: usize = 8;
@@ -141,13 +142,14 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 }
                 _ => {}
             }
-            let kind = view.map(|view| PassKindDecl::Draw {
+            let culling = culling(scope, cull);
+            let kind = view.zip(culling).map(|(view, cull)| PassKindDecl::Draw {
                 vertex: vertex.as_ref().map(located),
                 fragment: fragment.as_ref().map(located),
                 objects: filter(*objects),
                 view,
                 depth: depth.as_ref().map(|depth| depth.value),
-                cull: *cull,
+                cull,
                 blend: blends(scope, name, blend, write, modify),
             });
             (
@@ -333,6 +335,20 @@ fn condition(scope: &mut Scope<'_>, when: Option<&Expr>, has: Option<&Text>) -> 
         return None;
     }
     Some(Condition { when: when?, has: has.map(|has| has.value.clone()) })
+}
+
+fn culling(scope: &mut Scope<'_>, cull: &CullDoc) -> Option<CullDecl> {
+    Some(CullDecl::Fixed(match cull {
+        CullDoc::None => Cull::None,
+        CullDoc::Front => Cull::Front,
+        CullDoc::Back => Cull::Back,
+        CullDoc::Param(name) if scope.params.contains(&name.value.as_str()) => return Some(CullDecl::Param(name.value.clone())),
+        CullDoc::Param(name) => {
+            let known = scope.params.iter().map(|param| (*param).to_owned()).collect();
+            scope.report(ValidateError::Unknown { what: "parameter", name: name.value.clone(), known, span: name.span });
+            return None;
+        }
+    }))
 }
 
 fn filter(objects: ObjectsDoc) -> DrawFilter {

@@ -3,9 +3,10 @@
 use crate::expand::types::{ClearValue, Dimension, Located, ResourceId, Value};
 use crate::expression::Expression;
 use crate::format::Format;
+use crate::plan::Cull;
 use crate::published::DrawFilter;
 use crate::source::Span;
-use crate::syntax::document::{BlendDoc, CullDoc, DepthDoc};
+use crate::syntax::document::{BlendDoc, DepthDoc};
 
 /// A document whose every name stands for something.
 #[derive(Debug, Clone, PartialEq)]
@@ -188,7 +189,7 @@ pub enum PassKindDecl {
         objects: DrawFilter,
         view: View,
         depth: Option<DepthDoc>,
-        cull: CullDoc,
+        cull: CullDecl,
         blend: Vec<(Located<String>, BlendDoc)>,
     },
     Fullscreen {
@@ -203,6 +204,15 @@ pub enum PassKindDecl {
     Clear {
         value: Option<ClearValue>,
     },
+}
+
+/// Which side of a triangle is left out.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub enum CullDecl {
+    /// Always this one.
+    Fixed(Cull),
+    /// As this parameter's word says; its options are `none`, `front` and `back`.
+    Param(String),
 }
 
 /// From where a Draw draws.

@@ -88,7 +88,7 @@ pub fn fixture(text: &str) -> Fixture {
             Shape::Buffer { .. } => None,
         })
         .collect();
-    let expanded = Expanded { doc: "A test.".to_owned(), params: Vec::new(), resources, passes, outputs };
+    let expanded = Expanded { doc: "A test.".to_owned(), params: Vec::new(), resources, passes, outputs, offered: Vec::new() };
     let bound =
         Bound { expanded, shaders: Vec::new(), steps, formats, views: Vec::new(), draw_lists: Vec::new(), requirements: Vec::new() };
     Fixture { bound, sources }

@@ -1,9 +1,10 @@
 //! Draw passes: winding, culling, depth.
 
 use luminaire_graph::expand::types::{ClearValue, ResourceId};
+use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{BindingTarget, DepthTarget, Load, SampleType, Stages, StepKind, Targets};
 use luminaire_graph::published::{DrawBatch, DrawFilter, VertexAttribute, VertexFormat, VertexSchema, ViewKind};
-use luminaire_graph::syntax::document::{CompareDoc, CullDoc};
+use luminaire_graph::syntax::document::CompareDoc;
 use luminaire_passes::Gpu;
 
 use crate::support::{ATTACHED, Builder, SAMPLED, assert_near, format, part, read, shape, target};
@@ -45,7 +46,7 @@ pub(crate) fn draw_list(builder: &mut Builder, batches: Vec<DrawBatch>) {
     builder.scene.draw_lists = vec![(DrawFilter::All, ViewKind::Camera, batches)];
 }
 
-pub(crate) fn draw(shader_color: ResourceId, depth: Option<DepthTarget>, cull: CullDoc) -> StepKind {
+pub(crate) fn draw(shader_color: ResourceId, depth: Option<DepthTarget>, cull: Cull) -> StepKind {
     let colors = vec![target(part(shader_color, 0, 0), "rgba8unorm")];
     StepKind::Draw {
         vertex: "place".to_owned(),
@@ -63,13 +64,13 @@ const BOTH: Stages = Stages { vertex: true, fragment: true, compute: false };
 pub(crate) fn winding(gpu: &Gpu) {
     // Whether the one triangle is seen, which is counter-clockwise as it stands.
     let cases = [
-        (CullDoc::Back, false, false, true),
-        (CullDoc::Front, false, false, false),
-        (CullDoc::None, false, false, true),
-        (CullDoc::Back, true, false, false),
-        (CullDoc::Front, true, false, true),
-        (CullDoc::Front, false, true, true),
-        (CullDoc::Back, true, true, true),
+        (Cull::Back, false, false, true),
+        (Cull::Front, false, false, false),
+        (Cull::None, false, false, true),
+        (Cull::Back, true, false, false),
+        (Cull::Front, true, false, true),
+        (Cull::Front, false, true, true),
+        (Cull::Back, true, true, true),
     ];
     for (cull, mirrored, double_sided, seen) in cases {
         let mut builder = Builder::new();
@@ -100,7 +101,7 @@ pub(crate) fn depth_compare(gpu: &Gpu) {
         let depth = builder.texture("depth", shape("depth32float"), ATTACHED);
         let shader = builder.shader("surface.wgsl", SURFACE);
         let target = depth_target(depth, Load::Clear(ClearValue::Zero), true, CompareDoc::Greater);
-        builder.step("surface", Some(shader), draw(color, Some(target), CullDoc::Back), BOTH, vec![]);
+        builder.step("surface", Some(shader), draw(color, Some(target), Cull::Back), BOTH, vec![]);
         let executor = builder.render(gpu);
         assert_near(read(&executor, "color").pixel(1, 6), [1.0, 0.75, 0.0, 1.0]);
         assert_near(read(&executor, "depth").pixel(1, 6), [0.75, 0.0, 0.0, 1.0]);
@@ -126,7 +127,7 @@ pub(crate) fn read_only_depth_is_sampled(gpu: &Gpu) {
     let target = depth_target(depth, Load::Keep, false, CompareDoc::Greater);
     let stored = BindingTarget::Texture { view: part(depth, 0, 0), sample: SampleType::Depth, multisampled: false };
     let fragment = Stages { fragment: true, ..Stages::default() };
-    builder.step("sampled", Some(shader), draw(color, Some(target), CullDoc::Back), fragment, vec![("stored", stored)]);
+    builder.step("sampled", Some(shader), draw(color, Some(target), Cull::Back), fragment, vec![("stored", stored)]);
     let executor = builder.render(gpu);
     assert_near(read(&executor, "color").pixel(4, 4), [0.5, 0.75, 0.0, 1.0]);
 }
@@ -138,7 +139,7 @@ pub(crate) fn nothing_still_clears(gpu: &Gpu) {
     draw_list(&mut builder, Vec::new());
     let color = builder.texture("color", shape("rgba8unorm"), ATTACHED);
     let shader = builder.shader("surface.wgsl", SURFACE);
-    builder.step("surface", Some(shader), draw(color, None, CullDoc::Back), BOTH, vec![]);
+    builder.step("surface", Some(shader), draw(color, None, Cull::Back), BOTH, vec![]);
     let mut executor = builder.prepare(gpu);
     assert_eq!(executor.render_frame().expect("a frame").counts.draw_calls, 0);
     assert_near(read(&executor, "color").pixel(0, 0), [0.0; 4]);

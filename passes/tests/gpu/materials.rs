@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
+use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{BindingTarget, Stages};
 use luminaire_graph::published::{
     DrawBatch, MaterialBinding, PublishedSampler, PublishedTexture, PublishedWrap, TableKind, TableSchema, ViewKind, ViewRequest,
 };
-use luminaire_graph::syntax::document::CullDoc;
 use luminaire_passes::Gpu;
 
 use crate::draw::{batch, draw, draw_list, geometry};
@@ -67,7 +67,7 @@ fn textured() -> Builder {
     builder.step(
         "textured",
         Some(shader),
-        draw(color, None, CullDoc::Back),
+        draw(color, None, Cull::Back),
         Stages { vertex: true, fragment: true, compute: false },
         vec![
             ("instance_slots", BindingTarget::StorageTable("instance_slots".to_owned())),

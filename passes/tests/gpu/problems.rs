@@ -5,9 +5,9 @@ use std::sync::Arc;
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::expand::types::Dimension;
+use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{BindingTarget, Stages};
 use luminaire_graph::source::{SourceMap, Span};
-use luminaire_graph::syntax::document::CullDoc;
 use luminaire_passes::facts::lavapipe;
 use luminaire_passes::{Executor, Gpu, GpuOptions};
 
@@ -125,7 +125,7 @@ pub(crate) fn noop_scene() {
     );
     let stages = Stages { vertex: true, fragment: true, compute: false };
     let camera = BindingTarget::UniformTable("camera".to_owned());
-    builder.step("needs", Some(shader), draw(color, None, CullDoc::Back), stages, vec![("camera", camera)]);
+    builder.step("needs", Some(shader), draw(color, None, Cull::Back), stages, vec![("camera", camera)]);
     builder.scene.tables.insert("camra".to_owned(), vec![0; 16]);
     let found = problems(&gpu, builder);
     let codes: Vec<&str> = found.iter().map(|problem| problem.code).collect();
