@@ -1,4 +1,4 @@
-//! The dumps of one small pipeline, byte for byte. `BLESS=1` writes what is expected anew.
+//! The dumps of one small pipeline, byte for byte. `LUMINAIRE_ACCEPT=1` writes what is expected anew.
 #![allow(clippy::unwrap_used, clippy::panic)]
 
 mod support;
@@ -35,7 +35,7 @@ output shadow shadow
 
 fn expect(name: &str, found: &str) {
     let path = format!("{}/tests/expected/{name}", env!("CARGO_MANIFEST_DIR"));
-    if std::env::var_os("BLESS").is_some() {
+    if std::env::var_os("LUMINAIRE_ACCEPT").is_some() {
         std::fs::write(&path, found).unwrap();
     }
     let expected = std::fs::read_to_string(&path).unwrap_or_default();

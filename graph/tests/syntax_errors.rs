@@ -1,6 +1,6 @@
 //! What the messages of the reader say, and that each slip costs one.
 //!
-//! The fixtures in `syntax/` hold texts and, behind each, what is reported. `LUMINAIRE_BLESS=1` writes what is reported into them.
+//! The fixtures in `syntax/` hold texts and, behind each, what is reported. `LUMINAIRE_ACCEPT=1` writes what is reported into them.
 
 #![allow(clippy::unwrap_used, clippy::panic)]
 
@@ -119,10 +119,10 @@ fn check<T: DeserializeOwned>(name: &str) {
         }
         found.push_str(&format!("{text}----\n{report}"));
     }
-    if std::env::var_os("LUMINAIRE_BLESS").is_some() {
+    if std::env::var_os("LUMINAIRE_ACCEPT").is_some() {
         std::fs::write(path, found).unwrap();
     } else {
-        assert_eq!(found, fixture, "{name}: with LUMINAIRE_BLESS=1 the fixture takes over what is reported");
+        assert_eq!(found, fixture, "{name}: with LUMINAIRE_ACCEPT=1 the fixture takes over what is reported");
     }
 }
 

@@ -17,6 +17,8 @@ pub enum BindError {
     NoTaker { pass: String, slot: String, declared: bool, known: Vec<String>, span: Span },
     #[error("pass `{pass}`: `{variable}` {reason}")]
     Mismatch { kind: Mismatch, pass: String, variable: String, reason: String, hint: Option<String>, slot_span: Span, variable_span: Span },
+    #[error("pass `{pass}`: `{variable}` {reason}")]
+    Table { kind: Mismatch, pass: String, variable: String, reason: String, hint: Option<String>, variable_span: Span, pass_span: Span },
     #[error("pass `{pass}`: {reason}")]
     Param { pass: String, reason: String, hint: Option<String>, span: Span, pass_span: Span },
     #[error("pass `{pass}`: {reason}")]
@@ -29,7 +31,7 @@ pub enum BindError {
     NoFormat { resource: String, reasons: Vec<String>, span: Span, first: Option<(Span, String)> },
     #[error("pass `{pass}`: {reason}")]
     OverLimit { pass: String, reason: String, span: Span },
-    #[error("pass `{pass}` needs the feature `{feature}` {why}, and {device} does not have it")]
+    #[error("pass `{pass}` needs the feature `{feature}` {why}, which is not there ({device})")]
     MissingFeature { pass: String, feature: &'static str, why: String, device: String, span: Span },
 }
 
@@ -96,6 +98,10 @@ impl From<BindError> for Diagnostic {
             BindError::Mismatch { kind, hint, slot_span, variable_span, .. } => {
                 Diagnostic::error(kind.code(), message).at(slot_span, "given here").and(variable_span, "declared here").maybe_hint(hint)
             }
+            BindError::Table { kind, hint, variable_span, pass_span, .. } => Diagnostic::error(kind.code(), message)
+                .at(variable_span, "declared here")
+                .and(pass_span, "the pass that uses the shader")
+                .maybe_hint(hint),
             BindError::Param { hint, span, pass_span, .. } => Diagnostic::error("bind::params-member", message)
                 .at(span, "this member")
                 .and(pass_span, "the pass that uses the shader")

@@ -32,7 +32,7 @@ pub(super) fn check(pass: &Pass, bindings: &[Binding], device: &DeviceFacts, pro
         for (what, limit, is_kind) in kinds {
             let count = bindings.iter().filter(|binding| in_stage(&binding.stages) && is_kind(&binding.target)).count();
             if count > limit as usize {
-                let reason = format!("its {stage} stage uses {count} {what}, and {} allows {limit}", device.name);
+                let reason = format!("its {stage} stage uses {count} {what}, and the limit is {limit} ({})", device.name);
                 problems.push(BindError::OverLimit { pass: pass.name.clone(), reason, span: pass.span });
             }
         }

@@ -92,6 +92,8 @@ impl<'a> Builder<'a> {
         for slot in taken {
             if let Some(format) = self.formats[slot.part.resource.index()]
                 && let Some((feature, what)) = format_choice::feature_for(format, &slot.taker)
+                // Where it is missing, the choice of formats has said so.
+                && self.input.device.features.contains(&feature)
             {
                 let resource = &self.expanded.resources[slot.part.resource.index()].name;
                 self.require(feature, pass, format!("{what} `{resource}` ({format})"));

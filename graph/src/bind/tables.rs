@@ -16,14 +16,14 @@ pub(super) fn bind(
 ) -> Option<Result<BindingTarget, BindError>> {
     let name = global.name.as_str();
     let mismatch = |kind: Mismatch, reason: &str, hint: Option<String>| {
-        Err(BindError::Mismatch {
+        Err(BindError::Table {
             kind,
             pass: pass.name.clone(),
             variable: name.to_owned(),
             reason: reason.to_owned(),
             hint,
-            slot_span: pass.span,
             variable_span: global.span,
+            pass_span: pass.span,
         })
     };
     if let Some(sampler) = BuiltinSampler::ALL.into_iter().find(|sampler| sampler.name() == name) {

@@ -142,12 +142,13 @@ pub(super) fn targets(
     let bytes: u32 = colors.iter().flatten().map(|target| target.format.info().attachment_bytes).sum();
     let count = colors.len() as u32;
     if count > device.max_color_attachments {
-        let reason = format!("it has {count} color targets, and {} allows {}", device.name, device.max_color_attachments);
+        let reason = format!("it has {count} color targets, and the limit is {} ({})", device.max_color_attachments, device.name);
         builder.problems.push(BindError::OverLimit { pass: pass.name.clone(), reason, span: pass.span });
     }
     if bytes > device.max_attachment_bytes {
         let limit = device.max_attachment_bytes;
-        let reason = format!("its color targets take {bytes} bytes a sample (8-bit RGBA counts 8), and {} allows {limit}", device.name);
+        let reason =
+            format!("its color targets take {bytes} bytes a sample (8-bit RGBA counts 8), and the limit is {limit} ({})", device.name);
         builder.problems.push(BindError::OverLimit { pass: pass.name.clone(), reason, span: pass.span });
     }
     match builder.agreed.clone() {

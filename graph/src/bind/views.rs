@@ -173,7 +173,15 @@ fn check_dimension(view: &PartView, dimension: ViewDimension, shape: &TextureSha
         ViewDimension::Cube => "a cube",
         ViewDimension::CubeArray => "an array of cubes",
     };
-    Err((format!("is {sees}, and `{name}` is {is}"), None))
+    let declare = match shape.dimension {
+        Dimension::D1 => "texture_1d",
+        Dimension::D2 if layers > 1 => "texture_2d_array",
+        Dimension::D2 => "texture_2d",
+        Dimension::D3 => "texture_3d",
+        Dimension::Cube if layers > 6 => "texture_cube_array",
+        Dimension::Cube => "texture_cube",
+    };
+    Err((format!("is {sees}, and `{name}` is {is}"), Some(format!("declare {declare} or its kin, or name another resource"))))
 }
 
 fn scalar_name(kind: ScalarKind) -> &'static str {

@@ -72,7 +72,7 @@ pub(super) fn groups(
     let too_wide = (0..3).any(|axis| size[axis] > device.max_workgroup_size[axis]);
     if too_wide || invocations > u64::from(device.max_workgroup_invocations) {
         let reason = format!(
-            "its workgroup of {}x{}x{} is larger than {} allows ({} invocations, {}x{}x{})",
+            "its workgroup of {}x{}x{} is larger than the limit of {} ({} invocations, {}x{}x{})",
             size[0],
             size[1],
             size[2],
@@ -110,7 +110,7 @@ pub(super) fn groups(
     }
     if let Some(axis) = groups.iter().find(|axis| **axis > device.max_workgroups) {
         bad(
-            format!("it has {axis} workgroups along one axis, and {} allows {}", device.name, device.max_workgroups),
+            format!("it has {axis} workgroups along one axis, and the limit is {} ({})", device.max_workgroups, device.name),
             "use a larger workgroup or more axes",
             span,
         );
@@ -141,7 +141,8 @@ pub(super) fn check_copy(
             if format.0 != format.1 {
                 Some(format!("`{}` and `{}` have different formats", from.name, to.name))
             } else if extent_a != extent_b {
-                Some(format!("`{}` is {extent_a:?} and `{}` is {extent_b:?}", from.name, to.name))
+                let shown = |extent: [u32; 3]| format!("{}x{}x{}", extent[0], extent[1], extent[2]);
+                Some(format!("`{}` is {} and `{}` is {}", from.name, shown(extent_a), to.name, shown(extent_b)))
             } else if view_a.mips.len() != view_b.mips.len() || view_a.layers.len() != view_b.layers.len() || a.samples != b.samples {
                 Some(format!("`{}` and `{}` differ in mips, layers or samples", from.name, to.name))
             } else {

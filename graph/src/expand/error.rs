@@ -17,7 +17,7 @@ pub enum ExpandError {
     BadValue { what: String, reason: String, span: Span },
     #[error("resource `{name}`: {what} is 0")]
     SizeZero { name: String, what: &'static str, span: Span },
-    #[error("resource `{name}`: {what} is {value}, and {device} allows {limit}")]
+    #[error("resource `{name}`: {what} is {value}, and the limit is {limit} ({device})")]
     SizeOverLimit { name: String, what: &'static str, value: u64, limit: u64, device: String, span: Span },
     #[error("resource `{name}`: {reason}")]
     BadResource { name: String, reason: String, hint: &'static str, span: Span },

@@ -15,7 +15,7 @@ pub type Entries<T> = IndexMap<Text, T>;
 
 /// A whole pipeline file.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Pipeline", deny_unknown_fields)]
 pub struct Document {
     /// What the pipeline computes, from which source, and its limits.
     pub doc: String,
@@ -33,7 +33,7 @@ pub struct Document {
 
 /// A parameter.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Param", deny_unknown_fields)]
 pub struct ParamDoc {
     /// Its value unless set; also decides its type.
     pub default: Spanned<ValueDoc>,
@@ -84,7 +84,7 @@ pub type Expr = Spanned<ExprDoc>;
 
 /// A texture or a buffer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Resource", deny_unknown_fields)]
 pub enum ResourceDoc {
     /// Texels.
     Texture {
@@ -127,6 +127,7 @@ pub enum ResourceDoc {
 
 /// The shape of a texture.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename = "Dimension")]
 pub enum DimensionDoc {
     /// A line of texels.
     D1,
@@ -151,6 +152,7 @@ pub enum FormatDoc {
 
 /// The extent of a texture.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(rename = "Size")]
 pub enum SizeDoc {
     /// As large as the rendered image.
     #[default]
@@ -171,6 +173,7 @@ pub enum SizeDoc {
 
 /// How many mip levels.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename = "Mips")]
 pub enum MipsDoc {
     /// Down to one texel.
     Full,
@@ -180,6 +183,7 @@ pub enum MipsDoc {
 
 /// A value to clear to.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
+#[serde(rename = "Clear")]
 pub enum ClearDoc {
     /// All bits zero.
     Zero,
@@ -193,6 +197,7 @@ pub enum ClearDoc {
 
 /// Which surfaces a Draw draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
+#[serde(rename = "Objects")]
 pub enum ObjectsDoc {
     /// Those without transparency.
     Opaque,
@@ -208,6 +213,7 @@ pub enum ObjectsDoc {
 
 /// From where a Draw draws.
 #[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(rename = "View")]
 pub enum ViewDoc {
     /// The camera that renders.
     #[default]
@@ -220,7 +226,7 @@ pub enum ViewDoc {
 
 /// Depth test and write of a Draw or Fullscreen.
 #[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Depth", deny_unknown_fields)]
 pub struct DepthDoc {
     /// What passes.
     pub test: CompareDoc,
@@ -241,6 +247,7 @@ fn yes() -> bool {
 
 /// A comparison.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename = "Compare")]
 #[allow(missing_docs)]
 pub enum CompareDoc {
     Never,
@@ -255,6 +262,7 @@ pub enum CompareDoc {
 
 /// Which side of a triangle is left out. Surfaces of double-sided materials are never culled; mirrored ones are handled.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+#[serde(rename = "Cull")]
 pub enum CullDoc {
     /// Draw both sides.
     None,
@@ -269,6 +277,7 @@ pub enum CullDoc {
 
 /// How a color output is combined with what is there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Deserialize)]
+#[serde(rename = "Blend")]
 pub enum BlendDoc {
     /// Source over destination, source not premultiplied.
     Alpha,
@@ -286,6 +295,7 @@ pub enum BlendDoc {
 
 /// What a loop runs over.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename = "Each")]
 pub enum EachDoc {
     /// 0 up to a count.
     Count(Expr),
@@ -295,7 +305,7 @@ pub enum EachDoc {
 
 /// A pass, or a loop over passes.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(rename = "Pass", deny_unknown_fields)]
 pub enum PassDoc {
     /// Rasterises the scene's surfaces.
     Draw {

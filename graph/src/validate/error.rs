@@ -9,7 +9,7 @@ use crate::source::Span;
 pub enum ValidateError {
     #[error("`{name}` is not a name: {rule}")]
     BadName { name: String, rule: &'static str, span: Span },
-    #[error("{what} `{name}` does not exist")]
+    #[error("there is no {what} `{name}`")]
     Unknown { what: &'static str, name: String, known: Vec<String>, span: Span },
     #[error("`{text}` is not a reference to a resource: {reason}")]
     BadReference { text: String, reason: String, span: Span },
