@@ -100,7 +100,7 @@ impl<'a> Builder<'a> {
             }
         }
         let clears = self.clears(pass, taken);
-        let uses = taken.iter().map(|slot| self.touch(slot)).collect();
+        let uses = taken.iter().map(|slot| self.touch(pass, slot)).collect();
         Some(Step {
             pass: id,
             name: pass.name.clone(),
@@ -256,13 +256,14 @@ impl<'a> Builder<'a> {
         clears
     }
 
-    fn touch(&self, slot: &Taken) -> Use {
+    fn touch(&self, pass: &Pass, slot: &Taken) -> Use {
         let view = views::whole(&self.expanded.resources[slot.part.resource.index()], &slot.part);
         let access = match &slot.taker {
             Taker::Color { .. } => Access::ColorAttachment,
             Taker::Depth if slot.role == Role::Read => Access::DepthReadOnly,
             Taker::Depth => Access::DepthAttachment,
             Taker::Transfer if slot.name == "read" => Access::CopySource,
+            Taker::Transfer if matches!(pass.kind, PassKind::Clear { .. }) => Access::Clear,
             Taker::Transfer => Access::CopyTarget,
             Taker::Variable(global) => match (&global.kind, slot.role) {
                 (GlobalKind::Uniform { .. }, _) => Access::Uniform,
