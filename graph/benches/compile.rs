@@ -3,8 +3,6 @@
 //! Run with `cargo bench -p luminaire-graph`. The figure to look at is time per pass (criterion's throughput): it should hardly
 //! grow from 100 to 10,000 passes.
 
-use std::fmt::Write;
-
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use luminaire_graph::compile::{CompileInput, compile};
 use luminaire_graph::device::DeviceFacts;
@@ -28,18 +26,16 @@ fn pipeline(passes: usize) -> String {
     for index in 0..passes {
         let format = ["rgba16float", "rgba8unorm", "rg16float"][index % 3];
         let size = ["Output", "Scaled(0.5)", "Square(256)"][index % 3];
-        writeln!(text, "        \"r{index}\": Texture(format: \"{format}\", size: {size}),").unwrap();
+        text += &format!("        \"r{index}\": Texture(format: \"{format}\", size: {size}),\n");
     }
     text.push_str("    },\n    passes: {\n        \"p0\": Clear(write: \"r0\"),\n");
     for index in 1..passes {
         let (near, far) = (index - 1, index - index.min(1 + index * 7 % 13));
-        writeln!(
-            text,
-            "        \"p{index}\": Fullscreen(shader: \"mix.wgsl\", read: {{\"near\": \"r{near}\", \"far\": \"r{far}\"}}, write: {{\"color\": \"r{index}\"}}),"
-        )
-        .unwrap();
+        text += &format!(
+            "        \"p{index}\": Fullscreen(shader: \"mix.wgsl\", read: {{\"near\": \"r{near}\", \"far\": \"r{far}\"}}, write: {{\"color\": \"r{index}\"}}),\n"
+        );
     }
-    write!(text, "    }},\n    outputs: {{ \"color\": \"r{}\" }},\n)\n", passes - 1).unwrap();
+    text += &format!("    }},\n    outputs: {{ \"color\": \"r{}\" }},\n)\n", passes - 1);
     text
 }
 

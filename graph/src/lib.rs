@@ -7,8 +7,6 @@
 //! Guarantees: the same text gives the same plan, byte for byte; everything wrong is reported at once, with its place; no input
 //! can cause a panic. This crate depends on no GPU crate.
 
-#![allow(clippy::result_large_err, reason = "a diagnostic is large and rare; a box around each would burden every signature")]
-
 pub mod allocate;
 pub mod assemble;
 pub mod bind;

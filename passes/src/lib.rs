@@ -5,8 +5,6 @@
 //!
 //! Every error of wgpu comes back as a diagnostic; none panics.
 
-#![allow(clippy::result_large_err, reason = "a diagnostic is large and rare; a box around each would burden every signature")]
-
 mod backend;
 mod bind_groups;
 mod check;

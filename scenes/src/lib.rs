@@ -3,8 +3,6 @@
 //! A file becomes an [`asset::Asset`] or a scene document; both are spawned into a `bevy_ecs` [`world`]; [`publish`] turns the
 //! world into the tables, textures and draw lists that shaders ask for by name. Nothing here knows a GPU or a pipeline.
 
-#![allow(clippy::result_large_err, reason = "a diagnostic is large and rare; a box around each would burden every signature")]
-
 pub mod asset;
 pub mod gltf;
 pub mod primitive;

@@ -18,9 +18,9 @@ pub(super) fn run(arguments: &PlanArguments) -> bool {
     let counts = match &arguments.scene {
         None => one_of_everything(),
         Some(path) => match load_scene(path, None) {
-            Ok(LoadedScene { mut world, diagnostics, sources }) => {
+            Ok(LoadedScene { world, diagnostics, sources }) => {
                 report(&diagnostics, &sources);
-                luminaire_scenes::publish::counts(&mut world)
+                luminaire_scenes::publish::counts(&world)
             }
             Err((diagnostics, sources)) => return report(&diagnostics, &sources),
         },

@@ -1,6 +1,6 @@
 //! Shared by the tests: reference data, image metrics, and tests that say 'ignored' where something is missing.
 
-#![allow(dead_code, reason = "each test file uses a part of it")]
+#![allow(dead_code, clippy::panic, reason = "each test file uses a part of it; broken reference data should stop the test")]
 
 use std::path::{Path, PathBuf};
 

@@ -5,11 +5,14 @@ use crate::device::DeviceFacts;
 use crate::expand::types::Pass;
 use crate::plan::{Binding, BindingTarget, Stages};
 
+type InStage = fn(&Stages) -> bool;
+type IsKind = fn(&BindingTarget) -> bool;
+
 /// Checks the bindings of a pass against what each stage may have.
 pub(super) fn check(pass: &Pass, bindings: &[Binding], device: &DeviceFacts, problems: &mut Vec<BindError>) {
-    let stages: [(&str, fn(&Stages) -> bool); 3] =
+    let stages: [(&str, InStage); 3] =
         [("vertex", |stages| stages.vertex), ("fragment", |stages| stages.fragment), ("compute", |stages| stages.compute)];
-    let kinds: [(&str, u32, fn(&BindingTarget) -> bool); 5] = [
+    let kinds: [(&str, u32, IsKind); 5] = [
         ("sampled textures", device.max_sampled_textures, |target| {
             matches!(target, BindingTarget::Texture { .. } | BindingTarget::MaterialTexture(_))
         }),

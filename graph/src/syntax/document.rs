@@ -85,6 +85,7 @@ pub type Expr = Spanned<ExprDoc>;
 /// A texture or a buffer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename = "Resource", deny_unknown_fields)]
+#[allow(clippy::large_enum_variant, reason = "buffers are few; a box would only burden the reader")]
 pub enum ResourceDoc {
     /// Texels.
     Texture {

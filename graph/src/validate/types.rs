@@ -63,6 +63,7 @@ pub struct ResourceDecl {
 /// What a resource is.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
+#[allow(clippy::large_enum_variant, reason = "buffers are few; a box would only burden the reader")]
 pub enum ResourceKind {
     Texture {
         dimension: Dimension,

@@ -1,5 +1,7 @@
 //! Shared by the tests: a small published schema, files from the fixtures folder, and comparison with expected text.
 
+#![allow(clippy::expect_used, reason = "a broken fixture folder should stop the test")]
+
 use std::path::{Path, PathBuf};
 
 use luminaire_graph::compile::{Compilation, CompileInput, compile};

@@ -1,6 +1,6 @@
-//! Large generated graphs: `WORKLOAD=FOLDER cargo test --release --test workload -- --ignored --nocapture` reads every JSON file
-//! below the folder (passes with reads, writes and modifies in declared order, resources, outputs), plans it, and prints
-//! times and figures.
+//! Scheduling and allocation of large graphs from files: `WORKLOAD=FOLDER cargo bench -p luminaire-graph --bench workload` reads
+//! every JSON file below the folder (passes with reads, writes and modifies in declared order, resources, outputs), plans it, and
+//! prints times and figures. Without `WORKLOAD` it does nothing.
 #![allow(clippy::print_stdout, clippy::unwrap_used, clippy::panic)]
 
 use std::collections::HashMap;
@@ -136,9 +136,7 @@ fn cpu_seconds() -> f64 {
 
 const RUNS: u32 = 5;
 
-#[test]
-#[ignore = "needs a generated workload; measures time"]
-fn workload() {
+fn main() {
     let Some(folder) = std::env::var_os("WORKLOAD") else { return };
     let mut found = Vec::new();
     files(Path::new(&folder), &mut found);
