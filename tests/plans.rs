@@ -1,5 +1,7 @@
 //! Golden plans of every shipped pipeline: for a scene with one of everything, and for one with nothing.
 
+#![allow(clippy::expect_used, reason = "a test stops where it can't go on")]
+
 use std::path::{Path, PathBuf};
 
 use luminaire::files::{DiskFiles, embedded_pipelines};
