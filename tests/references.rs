@@ -1,6 +1,8 @@
 //! Direct light against path-traced references: rendered at four times the size and box-filtered, since a reference's pixel is the
 //! mean over its area.
 
+#![allow(clippy::print_stdout, reason = "the figures are worth seeing")]
+
 #[path = "support/mod.rs"]
 mod support;
 
