@@ -4,29 +4,13 @@
 use luminaire::files::{embedded_pipelines, embedded_scenes};
 use luminaire::graph::device::DeviceFacts;
 use luminaire::graph::diagnostic::render;
-use luminaire::passes::Adapter;
+use luminaire::passes::{Adapter, facts};
 use luminaire::session::{RenderRequest, Session, load_scene};
-
-/// What lavapipe of Mesa 22.3 offers, where it is more or less than WebGPU's defaults.
-fn lavapipe() -> DeviceFacts {
-    DeviceFacts {
-        name: "lavapipe's limits".to_owned(),
-        max_texture_1d: 16384,
-        max_texture_2d: 16384,
-        max_texture_3d: 4096,
-        max_layers: 2048,
-        max_buffer_bytes: 2 << 30,
-        max_storage_binding_bytes: 128 << 20,
-        max_workgroup_invocations: 1024,
-        max_workgroup_size: [1024, 1024, 1024],
-        ..DeviceFacts::webgpu_defaults()
-    }
-}
 
 #[test]
 fn shipped_pipelines_are_valid() {
     let mut failures = Vec::new();
-    for facts in [DeviceFacts::webgpu_defaults(), lavapipe()] {
+    for facts in [DeviceFacts::webgpu_defaults(), facts::lavapipe()] {
         for pipeline in embedded_pipelines() {
             for scene in embedded_scenes() {
                 let adapter = Adapter::noop(&facts).expect("the noop adapter needs no driver");

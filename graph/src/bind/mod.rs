@@ -27,8 +27,8 @@ use crate::device::DeviceFacts;
 use crate::diagnostic::{Diagnostic, has_errors};
 use crate::expand::types::{Expanded, Pass};
 use crate::published::PublishedSchema;
-use crate::reflect::interface::Shader;
-use crate::reflect::reflect;
+use crate::reflect::interface::{Shader, Stage};
+use crate::reflect::{check_fullscreen_inputs, check_varyings, reflect};
 use crate::source::{Files, SourceMap, Span};
 use program::Program;
 use types::Bound;
@@ -127,18 +127,30 @@ impl Loader<'_, '_> {
         };
         match program::entries(pass, &self.shaders[shader]) {
             Ok((vertex, main)) => {
-                let count = self.programs.len();
-                let shaders = &self.shaders;
-                let entry = self
-                    .programs
-                    .entry((shader, vertex, main))
-                    .or_insert_with(|| (program::program(shader, &shaders[shader], vertex, main), count));
-                Some(entry.1)
+                let key = (shader, vertex, main);
+                if let Some((_, index)) = self.programs.get(&key) {
+                    return Some(*index);
+                }
+                let index = self.programs.len();
+                self.programs.insert(key, (program::program(shader, &self.shaders[shader], vertex, main), index));
+                self.check_stages(key);
+                Some(index)
             }
             Err(problems) => {
                 self.diagnostics.extend(problems.into_iter().map(Diagnostic::from));
                 None
             }
         }
+    }
+
+    /// What the fragment stage takes, the stage before it must give.
+    fn check_stages(&mut self, (shader, vertex, main): ProgramKey) {
+        let entry = |index: Option<usize>| index.and_then(|index| self.shaders[shader].entries.get(index));
+        let problems = match (entry(vertex), entry(main)) {
+            (Some(vertex), Some(fragment)) => check_varyings(vertex, fragment),
+            (None, Some(main)) if main.stage == Stage::Fragment => check_fullscreen_inputs(main),
+            _ => Vec::new(),
+        };
+        self.diagnostics.extend(problems);
     }
 }

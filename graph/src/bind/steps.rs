@@ -150,7 +150,6 @@ impl<'a> Builder<'a> {
             }
             PassKind::Fullscreen { .. } => {
                 let main = main?;
-                work::fullscreen_inputs(pass, main, self.problems);
                 let targets = targets::targets(pass, taken, Some(main), self.expanded, self.formats, self.input.device, self.problems)?;
                 Some((StepKind::Fullscreen { fragment: main.name.clone(), targets }, None))
             }

@@ -36,23 +36,6 @@ pub(super) fn attributes(pass: &Pass, vertex: &EntryPoint, published: &Published
     inputs.into_iter().map(|input| input.name.clone()).collect()
 }
 
-/// A Fullscreen's fragment shader gets its texture coordinates at location 0, and nothing else.
-pub(super) fn fullscreen_inputs(pass: &Pass, main: &EntryPoint, problems: &mut Vec<BindError>) {
-    for varying in &main.varyings {
-        if varying.location != 0 || varying.wgsl != "vec2<f32>" {
-            problems.push(BindError::Target {
-                pass: pass.name.clone(),
-                reason: format!(
-                    "the fragment shader `{}` takes `{}` at @location({}) as {}, and a Fullscreen has only @location(0) vec2<f32>",
-                    main.name, varying.name, varying.location, varying.wgsl
-                ),
-                hint: Some("take @location(0) uv: vec2<f32>, from (0, 0) at the top left, or @builtin(position)".to_owned()),
-                span: varying.span,
-            });
-        }
-    }
-}
-
 /// The number of workgroups of a Compute.
 pub(super) fn groups(
     pass: &Pass,

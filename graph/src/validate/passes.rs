@@ -89,6 +89,14 @@ struct Common<'a> {
     after: &'a [Text],
 }
 
+impl<'a> Common<'a> {
+    /// Of a kind with a shader; `parts` are read, written and modified.
+    fn of_shader(shader: &'a Text, constants: &'a Entries<Expr>, parts: [&'a Entries<Text>; 3], after: &'a [Text]) -> Common<'a> {
+        let [read, write, modify] = parts.map(slots);
+        Common { when: None, has: None, shader: Some(shader), constants: Some(constants), read, write, modify, after }
+    }
+}
+
 fn slots(entries: &Entries<Text>) -> Vec<(Located<String>, &Text)> {
     entries.iter().map(|(name, part)| (located(name), part)).collect()
 }
@@ -152,33 +160,12 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 cull,
                 blend: blends(scope, name, blend, write, modify),
             });
-            (
-                Common {
-                    when: when.as_ref(),
-                    has: has.as_ref(),
-                    shader: Some(shader),
-                    constants: Some(constants),
-                    read: slots(read),
-                    write: slots(write),
-                    modify: slots(modify),
-                    after,
-                },
-                kind,
-            )
+            (Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) }, kind)
         }
         PassDoc::Fullscreen { when, has, shader, entry, constants, blend, read, write, modify, after, .. } => {
             let kind = PassKindDecl::Fullscreen { entry: entry.as_ref().map(located), blend: blends(scope, name, blend, write, modify) };
             (
-                Common {
-                    when: when.as_ref(),
-                    has: has.as_ref(),
-                    shader: Some(shader),
-                    constants: Some(constants),
-                    read: slots(read),
-                    write: slots(write),
-                    modify: slots(modify),
-                    after,
-                },
+                Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) },
                 Some(kind),
             )
         }
@@ -200,19 +187,7 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 }
             };
             let kind = work.map(|work| PassKindDecl::Compute { entry: entry.as_ref().map(located), work });
-            (
-                Common {
-                    when: when.as_ref(),
-                    has: has.as_ref(),
-                    shader: Some(shader),
-                    constants: Some(constants),
-                    read: slots(read),
-                    write: slots(write),
-                    modify: slots(modify),
-                    after,
-                },
-                kind,
-            )
+            (Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) }, kind)
         }
         PassDoc::Copy { when, has, read, write, after, .. } => {
             let slot = |name: &str, text: &Text| Located { value: name.to_owned(), span: text.span };
