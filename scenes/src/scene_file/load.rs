@@ -11,6 +11,7 @@ use luminaire_graph::syntax::spanned::Spanned;
 
 use super::checked::check;
 use super::checks::Problems;
+use super::defaults::add_defaults;
 use super::document::SceneDoc;
 use super::spawn;
 use crate::gltf;
@@ -34,10 +35,11 @@ pub struct LoadedScene {
 pub fn load_scene(path: &Path, asset_root: Option<&Path>, sources: &mut SourceMap) -> Result<LoadedScene, Vec<Diagnostic>> {
     match extension(path).as_str() {
         "gltf" | "glb" => {
-            let gltf::Loaded { asset, warnings } = load_gltf(path, asset_root)?;
+            let gltf::Loaded { asset, mut warnings } = load_gltf(path, asset_root)?;
             let mut world = new_world();
             let stored = store_asset(&mut world, asset);
             spawn_stored(&mut world, &stored, None);
+            warnings.extend(add_defaults(&mut world, &path.display().to_string()));
             Ok(LoadedScene { world, warnings })
         }
         "ron" => {

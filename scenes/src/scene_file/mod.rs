@@ -21,6 +21,7 @@
 
 mod checked;
 mod checks;
+mod defaults;
 mod document;
 mod load;
 mod spawn;
