@@ -13,7 +13,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
     after_help = "\
 Examples:
   luminaire render pipelines/pbr.ron --scene scenes/cornell.ron -o cornell.png
-  luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set tone_mapping=aces
+  luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set exposure=1
   luminaire check pipelines/*.ron
   luminaire plan pipelines/pbr.ron --format dot | dot -Tsvg -o plan.svg
 
