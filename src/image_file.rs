@@ -79,10 +79,7 @@ pub fn write_image(path: &Path, picture: &LinearImage) -> Result<(), Diagnostic>
 /// Writes a file whole or not at all.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
     let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let failed = |error: std::io::Error| {
-        Diagnostic::error("output::write", format!("can't write `{}`: {error}", path.display()))
-            .hint("choose a path in a folder that exists and may be written to")
-    };
+    let failed = |error: std::io::Error| unwritable(path, folder, &error);
     let mut file = tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map_err(failed)?;
     file.write_all(bytes).map_err(failed)?;
     file.as_file().sync_all().map_err(failed)?;
@@ -111,8 +108,19 @@ pub fn check_writable(path: &Path) -> Result<(), Diagnostic> {
             Diagnostic::error("output::write", format!("can't write `{}`: it is a folder", path.display())).hint("name a file in it")
         );
     }
-    tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map(|_| ()).map_err(|error| {
-        Diagnostic::error("output::write", format!("can't write `{}`: {error}", path.display()))
-            .hint("choose a path in a folder that exists and may be written to")
-    })
+    tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map(|_| ()).map_err(|error| unwritable(path, folder, &error))
+}
+
+/// Says why in terms of the path that was asked for: the temporary file's name means nothing to its reader.
+fn unwritable(path: &Path, folder: &Path, error: &std::io::Error) -> Diagnostic {
+    let shown = folder.display();
+    let reason = if folder.is_dir() {
+        format!("the folder `{shown}` takes no file ({})", error.kind())
+    } else if folder.exists() {
+        format!("`{shown}` is no folder")
+    } else {
+        format!("there is no folder `{shown}`")
+    };
+    Diagnostic::error("output::write", format!("can't write `{}`: {reason}", path.display()))
+        .hint("choose a path in a folder that exists and may be written to")
 }

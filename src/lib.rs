@@ -6,6 +6,7 @@
 pub mod cli;
 pub mod files;
 pub mod image_file;
+pub mod ron_kind;
 pub mod session;
 
 pub use luminaire_graph as graph;

@@ -3,8 +3,8 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use luminaire_graph::compile::{CompileInput, compile};
-use luminaire_graph::diagnostic::{Diagnostic, has_errors};
+use luminaire_graph::compile::{Compilation, CompileInput, compile};
+use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats};
@@ -12,8 +12,9 @@ use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
 use luminaire_scenes::scene_file;
 use luminaire_scenes::world::World;
 
-use crate::files::{DiskFiles, embedded_scene};
+use crate::files::{DiskFiles, embedded_pipelines, embedded_scene, embedded_scenes};
 use crate::image_file::LinearImage;
+use crate::ron_kind::RonKind;
 
 /// Problems and the texts that they point into.
 pub type Problems = (Vec<Diagnostic>, SourceMap);
@@ -40,22 +41,46 @@ pub fn load_scene(path: &str, asset_root: Option<&Path>) -> Result<LoadedScene, 
     };
     match loaded {
         Ok(loaded) => Ok(LoadedScene { world: loaded.world, diagnostics: loaded.warnings, sources }),
-        Err(mut diagnostics) => {
-            let known = crate::files::embedded_scenes();
-            if !on_disk.exists()
-                && let Some(first) = diagnostics.first_mut()
-                && first.hint.is_none()
-            {
-                first.hint = Some(format!("scenes that come with the program: {}", known.join(", ")));
-            }
-            Err((diagnostics, sources))
-        }
+        Err(diagnostics) => Err((explain_scene_errors(path, diagnostics, &sources), sources)),
     }
 }
 
-/// Whether a RON file is a scene and not a pipeline: pipelines have passes.
-pub fn is_scene_text(path: &Path) -> bool {
-    std::fs::read_to_string(path).is_ok_and(|text| !text.lines().any(|line| line.trim_start().starts_with("passes:")))
+/// A path that leads nowhere gets the scenes that there are; a pipeline in a scene's place gets that said, and nothing else.
+fn explain_scene_errors(path: &str, mut diagnostics: Vec<Diagnostic>, sources: &SourceMap) -> Vec<Diagnostic> {
+    let known = embedded_scenes().join(", ");
+    if first_text(sources).and_then(RonKind::of) == Some(RonKind::Pipeline) {
+        let hint = format!("scenes are .gltf, .glb and scene .ron files; those that come with the program: {known}");
+        return vec![Diagnostic::error("scene::is-pipeline", format!("`{path}` is a pipeline, and a scene belongs here")).hint(hint)];
+    }
+    if !Path::new(path).exists()
+        && let Some(first) = diagnostics.first_mut()
+    {
+        if first.code == "scene::unknown-kind" {
+            first.message = format!("there is no scene `{path}`");
+        }
+        let nearest = did_you_mean(path, embedded_scenes().iter().map(String::as_str));
+        first.hint = Some(
+            nearest.unwrap_or_else(|| format!("scenes are .gltf, .glb and scene .ron files; those that come with the program: {known}")),
+        );
+    }
+    diagnostics
+}
+
+/// Compiles; a scene in a pipeline's place gets that said, and nothing else.
+pub fn compile_pipeline(input: &CompileInput<'_>) -> Compilation {
+    let mut compilation = compile(input);
+    if compilation.plan.is_none() && first_text(&compilation.sources).and_then(RonKind::of) == Some(RonKind::Scene) {
+        let known = embedded_pipelines().join(", ");
+        let message = format!("`{}` is a scene, and a pipeline belongs here", input.pipeline);
+        let hint = format!("name the scene after --scene; pipelines that come with the program: {known}");
+        compilation.diagnostics = vec![Diagnostic::error("compile::is-scene", message).hint(hint)];
+    }
+    compilation
+}
+
+/// The text that was read first: the pipeline or scene itself.
+fn first_text(sources: &SourceMap) -> Option<&str> {
+    sources.iter().next().map(|(_, file)| &*file.text)
 }
 
 /// What to render.
@@ -101,7 +126,7 @@ impl Session {
         let facts = adapter.facts();
         let published = schema();
         let counts = counts(world);
-        let compilation = compile(&CompileInput {
+        let compilation = compile_pipeline(&CompileInput {
             pipeline: request.pipeline,
             files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
             published: &published,

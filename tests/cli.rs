@@ -80,6 +80,96 @@ fn bad_input() -> Result<(), Failed> {
     let with = |path: &'static str| elsewhere.iter().copied().chain([path]).collect::<Vec<_>>();
     refused(&with("/nonexistent/out.png"), &["output::write", "/nonexistent/out.png"], folder.path())?;
     refused(&with("out.bmp"), &["output::format", ".png"], folder.path())?;
+    refused(&with("/proc/out.png"), &["output::write", "the folder `/proc` takes no file"], folder.path())?;
+    refused(&with("Cargo.toml/out.png"), &["output::write", "`Cargo.toml` is no folder"], folder.path())?;
+    let same: Vec<&str> = with("same.png").into_iter().chain(["--stats", "same.png"]).collect();
+    refused(&same, &["output::same-path", "same.png"], folder.path())?;
+    Ok(())
+}
+
+/// What is wrong with a path is said in terms of what was meant; what is wrong with scene and pipeline is said at once.
+fn wrong_paths() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let (pbr, cornell) = ("pipelines/pbr.ron", "scenes/cornell.ron");
+    let binary = folder.path().with_extension("ron");
+    std::fs::write(&binary, [0_u8, 159, 146, 150, 255])?;
+    let binary_path = binary.to_str().ok_or("a path")?;
+    let cases: &[(&[&str], &[&str])] = &[
+        (&["plan", cornell], &["compile::is-scene", "`scenes/cornell.ron` is a scene", "--scene", pbr]),
+        (&["plan", pbr, "--scene", pbr], &["scene::is-pipeline", "`pipelines/pbr.ron` is a pipeline", cornell]),
+        (&["plan", "nope", "--scene", "nowhere"], &["there is no scene `nowhere`", cornell, "compile::missing-file", pbr]),
+        (&["plan", pbr, "--scene", "scenes/cornel.ron"], &["scene::unreadable", "did you mean `scenes/cornell.ron`?"]),
+        (&["plan", "pipelines"], &["compile::missing-file", "it is a folder"]),
+        (&["plan", pbr, "--set", "exposure=nan", "--set", "foo=1"], &["expand::bad-set", "expand::unknown-param"]),
+        (&["plan", pbr, "--size", "4294967295x1"], &["expand::size-over-limit"]),
+        (&["check", "scenes/none.ron"], &["scene::unreadable", cornell]),
+        (&["check", "none.ron", "none.wgsl", "none.glb", "none"], &["none.ron", "none.wgsl", "none.glb", "check::kind"]),
+        (&["check", binary_path], &["not UTF-8 at byte 1"]),
+    ];
+    let result = cases.iter().try_for_each(|(arguments, expected)| refused(arguments, expected, folder.path()));
+    std::fs::remove_file(&binary)?;
+    result
+}
+
+/// Wrong usage is status 2, before anything is loaded.
+fn usage() -> Result<(), Failed> {
+    let render = ["render", "pipelines/pbr.ron", "--scene", "scenes/cornell.ron", "-o", "/nonexistent/out.png"];
+    let wrong: [&[&str]; 6] =
+        [&["--frames", "0"], &["--size", "x"], &["--size", "4294967296x1"], &["--size", "-1x5"], &["--set", "exposure"], &["--bogus"]];
+    for more in wrong {
+        let arguments: Vec<&str> = render.iter().chain(more).copied().collect();
+        let output = run(&arguments)?;
+        if output.status.code() != Some(2) || output.stderr.is_empty() {
+            return Err(format!("{more:?} ended with {:?}", output.status.code()).into());
+        }
+    }
+    Ok(())
+}
+
+/// Damages shipped files in many places, always in the same way: they are read or refused, and nothing else happens.
+fn damaged_files() -> Result<(), Failed> {
+    const TOKENS: [&str; 12] = [
+        "-1",
+        "0",
+        "9223372036854775807",
+        "1e400",
+        "NaN",
+        "\"",
+        "(",
+        "}",
+        "/*",
+        "r#\"",
+        "\"1 / 0\"",
+        "\"output.width * 9223372036854775807\"",
+    ];
+    let folder = tempfile::tempdir()?;
+    let mut state = 1_u64;
+    let mut random = |below: usize| {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (state >> 33) as usize % below.max(1)
+    };
+    for name in ["pipelines/pbr.ron", "scenes/materials.ron", "shaders/pbr/light.wgsl", "pipelines/albedo.ron"] {
+        let original = std::fs::read(Path::new(env!("CARGO_MANIFEST_DIR")).join(name))?;
+        let path = folder.path().join(Path::new(name).file_name().ok_or("a name")?);
+        for round in 0..12 {
+            let mut bytes = original.clone();
+            let at = random(bytes.len());
+            match round % 3 {
+                0 => bytes[at] = random(256) as u8,
+                1 => bytes.truncate(at),
+                _ => {
+                    let token = TOKENS[random(TOKENS.len())].as_bytes();
+                    bytes.splice(at..(at + token.len()).min(original.len()), token.iter().copied());
+                }
+            }
+            std::fs::write(&path, &bytes)?;
+            let output = run(&["check", path.to_str().ok_or("a path")?])?;
+            let refused = output.status.code() == Some(1) && !output.stderr.is_empty();
+            if !refused && output.status.code() != Some(0) {
+                return Err(format!("{name}, round {round}: {:?}", output.status.code()).into());
+            }
+        }
+    }
     Ok(())
 }
 
@@ -174,6 +264,9 @@ fn main() {
     let data = shared().is_none().then_some("the reference data");
     let trials: Vec<Trial> = vec![
         trial("bad input is refused", adapter, bad_input),
+        trial("wrong paths are explained", None, wrong_paths),
+        trial("wrong usage is status 2", None, usage),
+        trial("damaged files are read or refused", None, damaged_files),
         trial("a missing adapter is explained", None, no_adapter),
         trial("check and plan need no adapter", None, check_and_plan),
         trial("the same command gives the same bytes", adapter, same_bytes_twice),

@@ -77,7 +77,9 @@ const fn integer(
     sample: SampleKind,
     storage: StorageSupport,
 ) -> FormatInfo {
-    FormatInfo { sample, blendable: false, ..color(name, texel_bytes, components, attachment_bytes, storage) }
+    // Integers of 32 bits have one sample per texel.
+    let multisample = texel_bytes / components < 4;
+    FormatInfo { sample, blendable: false, multisample, ..color(name, texel_bytes, components, attachment_bytes, storage) }
 }
 
 const fn float32(name: &'static str, texel_bytes: u32, components: u32, storage: StorageSupport) -> FormatInfo {
@@ -171,5 +173,17 @@ impl Format {
 impl std::fmt::Display for Format {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         f.write_str(self.name())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn whole_numbers_of_32_bits_have_one_sample() {
+        for (name, expected) in [("r32uint", false), ("rg32sint", false), ("rgba32uint", false), ("rgba16uint", true), ("r8sint", true)] {
+            assert_eq!(Format::from_name(name).map(|format| format.info().multisample), Some(expected), "{name}");
+        }
     }
 }

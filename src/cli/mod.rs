@@ -39,6 +39,10 @@ fn report(diagnostics: &[Diagnostic], sources: &SourceMap) -> bool {
 fn print(text: &str) -> bool {
     match std::io::stdout().write_all(text.as_bytes()).and_then(|()| std::io::stdout().flush()) {
         Ok(()) => true,
-        Err(error) => error.kind() == std::io::ErrorKind::BrokenPipe,
+        Err(error) if error.kind() == std::io::ErrorKind::BrokenPipe => true,
+        Err(error) => {
+            let message = format!("can't write to standard output: {error}");
+            report(&[Diagnostic::error("output::write", message).hint("direct it elsewhere")], &SourceMap::default())
+        }
     }
 }

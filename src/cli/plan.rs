@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use luminaire_graph::compile::{CompileInput, compile};
+use luminaire_graph::compile::{Compilation, CompileInput};
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::dump;
 use luminaire_graph::published::SceneCounts;
@@ -11,30 +11,25 @@ use luminaire_graph::source::SourceMap;
 use super::arguments::{PlanArguments, PlanFormat};
 use super::{print, report};
 use crate::files::DiskFiles;
-use crate::session::{LoadedScene, load_scene};
+use crate::session::{LoadedScene, compile_pipeline, load_scene};
 
 pub(super) fn run(arguments: &PlanArguments) -> bool {
-    let published = luminaire_scenes::publish::schema();
-    let counts = match &arguments.scene {
+    let scene = arguments.scene.as_ref().map(|path| load_scene(path, None));
+    let counts = match scene {
         None => one_of_everything(),
-        Some(path) => match load_scene(path, None) {
-            Ok(LoadedScene { world, diagnostics, sources }) => {
-                report(&diagnostics, &sources);
-                luminaire_scenes::publish::counts(&world)
-            }
-            Err((diagnostics, sources)) => return report(&diagnostics, &sources),
-        },
+        Some(Ok(LoadedScene { world, diagnostics, sources })) => {
+            report(&diagnostics, &sources);
+            luminaire_scenes::publish::counts(&world)
+        }
+        Some(Err((diagnostics, sources))) => {
+            report(&diagnostics, &sources);
+            // What is wrong with the pipeline is said at once, too.
+            let compilation = compile_for(arguments, &one_of_everything());
+            report(&compilation.diagnostics, &compilation.sources);
+            return false;
+        }
     };
-    let compilation = compile(&CompileInput {
-        pipeline: &arguments.pipeline,
-        files: &DiskFiles::for_pipeline(Path::new(&arguments.pipeline)),
-        published: &published,
-        counts: &counts,
-        device: &DeviceFacts::webgpu_defaults(),
-        output: arguments.size,
-        sets: &arguments.sets,
-        outputs: (!arguments.output.is_empty()).then_some(&arguments.output),
-    });
+    let compilation = compile_for(arguments, &counts);
     let fine = report(&compilation.diagnostics, &compilation.sources);
     match compilation.plan {
         None => false,
@@ -48,6 +43,19 @@ pub(super) fn run(arguments: &PlanArguments) -> bool {
             print(&text) && fine
         }
     }
+}
+
+fn compile_for(arguments: &PlanArguments, counts: &SceneCounts) -> Compilation {
+    compile_pipeline(&CompileInput {
+        pipeline: &arguments.pipeline,
+        files: &DiskFiles::for_pipeline(Path::new(&arguments.pipeline)),
+        published: &luminaire_scenes::publish::schema(),
+        counts,
+        device: &DeviceFacts::webgpu_defaults(),
+        output: arguments.size,
+        sets: &arguments.sets,
+        outputs: (!arguments.output.is_empty()).then_some(&arguments.output),
+    })
 }
 
 /// Counts under which every `has` stands, for plans without a scene.

@@ -1,17 +1,22 @@
 //! `luminaire render`: a scene into an image file.
 
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use indicatif::{ProgressBar, ProgressStyle};
+use luminaire_graph::compile::CompileInput;
+use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::FrameStats;
 use serde_json::{Value, json};
 
 use super::arguments::RenderArguments;
+use super::plan::one_of_everything;
 use super::report;
+use crate::files::DiskFiles;
 use crate::image_file::{ImageFormat, check_writable, write_file, write_image};
-use crate::session::{LoadedScene, Problems, RenderRequest, Session, load_scene};
+use crate::session::{LoadedScene, Problems, RenderRequest, Session, compile_pipeline, load_scene};
 
 pub(super) fn run(arguments: &RenderArguments) -> bool {
     match render(arguments) {
@@ -24,7 +29,8 @@ fn render(arguments: &RenderArguments) -> Result<(), Problems> {
     let output = output_name(arguments)?;
     let progress = Progress::new();
     progress.say("loading the scene");
-    let LoadedScene { mut world, diagnostics, sources } = load_scene(&arguments.scene, arguments.asset_root.as_deref())?;
+    let loaded = load_scene(&arguments.scene, arguments.asset_root.as_deref());
+    let LoadedScene { mut world, diagnostics, sources } = loaded.inspect_err(|_| report_pipeline(&progress, arguments))?;
     progress.report(&diagnostics, &sources);
 
     progress.say("compiling the pipeline and preparing the GPU");
@@ -60,12 +66,32 @@ fn render(arguments: &RenderArguments) -> Result<(), Problems> {
     Ok(())
 }
 
+/// Where the scene can't be loaded: what is wrong with the pipeline anyway, so that both can be mended at once.
+fn report_pipeline(progress: &Progress, arguments: &RenderArguments) {
+    let compilation = compile_pipeline(&CompileInput {
+        pipeline: &arguments.pipeline,
+        files: &DiskFiles::for_pipeline(Path::new(&arguments.pipeline)),
+        published: &luminaire_scenes::publish::schema(),
+        counts: &one_of_everything(),
+        device: &DeviceFacts::webgpu_defaults(),
+        // The image's size is left to the adapter's limits, which are not known here.
+        output: [1280, 720],
+        sets: &arguments.sets,
+        outputs: arguments.output.as_ref().map(std::slice::from_ref),
+    });
+    progress.report(&compilation.diagnostics, &compilation.sources);
+}
+
 /// The output to write: asked for, or what the file's format holds. Paths are checked before anything is loaded.
 fn output_name(arguments: &RenderArguments) -> Result<String, Problems> {
     let mut problems = Vec::new();
     let format = ImageFormat::of_path(&arguments.file);
     problems.extend(check_writable(&arguments.file).err());
     problems.extend(arguments.stats.as_deref().and_then(|path| check_writable(path).err()));
+    if arguments.stats.as_ref() == Some(&arguments.file) {
+        let message = format!("`{}` is the image's path and that of the statistics", arguments.file.display());
+        problems.push(Diagnostic::error("output::same-path", message).hint("name two files: -o picture.png --stats picture.json"));
+    }
     match format {
         Ok(format) if problems.is_empty() => Ok(arguments.output.clone().unwrap_or_else(|| match format {
             ImageFormat::Png => "color".to_owned(),
