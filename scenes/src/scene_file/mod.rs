@@ -21,6 +21,7 @@
 
 mod checked;
 mod checks;
+mod default_light;
 mod document;
 mod load;
 mod spawn;
