@@ -11,9 +11,8 @@ use luminaire_graph::syntax::spanned::Spanned;
 
 use super::checked::check;
 use super::checks::Problems;
-use super::defaults::add_defaults;
 use super::document::SceneDoc;
-use super::spawn;
+use super::{default_light, spawn};
 use crate::gltf;
 use crate::world::{new_world, spawn_stored, store_asset};
 
@@ -30,16 +29,20 @@ pub struct LoadedScene {
 }
 
 /// Loads a `.gltf`, `.glb` or `.ron` file. `asset_root` is the folder that the files which it names may come from; its own
-/// folder if not given. Texts are added to `sources`, for messages.
+/// folder if not given. Texts are added to `sources`, for messages. A glTF file without lights gets some, with the warning
+/// `scene::default-light`.
 /// Errors: everything that is wrong, `scene::...` for the scene file and `gltf::...` for what it names.
 pub fn load_scene(path: &Path, asset_root: Option<&Path>, sources: &mut SourceMap) -> Result<LoadedScene, Vec<Diagnostic>> {
     match extension(path).as_str() {
         "gltf" | "glb" => {
             let gltf::Loaded { asset, mut warnings } = load_gltf(path, asset_root)?;
             let mut world = new_world();
+            let is_dark = default_light::is_missing(&asset);
             let stored = store_asset(&mut world, asset);
             spawn_stored(&mut world, &stored, None);
-            warnings.extend(add_defaults(&mut world, &path.display().to_string()));
+            if is_dark {
+                warnings.push(default_light::add(&mut world, &path.display().to_string()));
+            }
             Ok(LoadedScene { world, warnings })
         }
         "ron" => {

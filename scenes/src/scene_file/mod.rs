@@ -21,7 +21,7 @@
 
 mod checked;
 mod checks;
-mod defaults;
+mod default_light;
 mod document;
 mod load;
 mod spawn;

@@ -1,13 +1,13 @@
 //! Which camera renders, and where it stands.
 //!
 //! A camera's pose is rigid whatever its node's transform is: scale, shear and mirroring are taken out, and a degenerate axis
-//! falls back to a fixed one. A scene without cameras gets one that frames it.
+//! falls back to a fixed one. A scene without cameras gets one that frames it, or stands in it if it is a room.
 
 use bevy_ecs::prelude::{Entity, World};
 use glam::{Affine3A, DVec3, Mat3A, Vec3};
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 
-use super::{Aabb, Camera, CameraSlot, GlobalTransform, Name};
+use super::{Aabb, Camera, CameraSlot, GlobalTransform, Name, Triangles, interior_camera};
 use crate::asset::Projection;
 
 /// A camera in world space: a right-handed orthonormal frame and a projection.
@@ -47,16 +47,22 @@ pub fn select_camera(world: &mut World, name: Option<&str>) -> Result<Option<Ent
     }
 }
 
-/// The pose of the camera of a name, of the first camera, or of one that frames the scene. `aspect` is width over height.
+/// The pose of the camera of a name, of the first camera, or of one made for the scene. `aspect` is width over height.
 /// Needs propagated transforms. Errors: `world::unknown-camera`.
 pub fn camera_pose(world: &mut World, name: Option<&str>, bounds: Option<Aabb>, aspect: f64) -> Result<CameraPose, Diagnostic> {
-    let Some(entity) = select_camera(world, name)? else { return Ok(framing_camera(bounds, aspect)) };
+    let Some(entity) = select_camera(world, name)? else { return Ok(default_camera(world, bounds, aspect)) };
     let transform = world.get::<GlobalTransform>(entity).map_or(Affine3A::IDENTITY, |transform| transform.0);
     let Some(camera) = world.get::<Camera>(entity) else { return Ok(framing_camera(bounds, aspect)) };
     let (right, up, back) = rigid_axes(transform.matrix3);
     let position = transform.translation.as_dvec3();
     let position = if position.is_finite() { position } else { DVec3::ZERO };
     Ok(CameraPose { position, right, up, back, projection: camera.projection, ev100: camera.ev100 })
+}
+
+/// The camera of a scene that has none: inside of a room, else one that frames the scene.
+fn default_camera(world: &mut World, bounds: Option<Aabb>, aspect: f64) -> CameraPose {
+    let inside = bounds.and_then(|bounds| interior_camera(&Triangles::of_world(world), bounds));
+    inside.unwrap_or_else(|| framing_camera(bounds, aspect))
 }
 
 /// A camera that sees all of the bounds, from the front, a little from the right and above, with a vertical field of view of

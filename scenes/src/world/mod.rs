@@ -8,10 +8,12 @@ mod bounds;
 mod camera;
 mod components;
 mod edit;
+mod interior;
 mod resources;
 mod slots;
 mod spawn;
 mod transform;
+mod triangles;
 
 pub use bevy_ecs::hierarchy::{ChildOf, Children};
 pub use bevy_ecs::name::Name;
@@ -23,7 +25,9 @@ pub use components::{
     Transform,
 };
 pub use edit::{find_by_name, set_translation};
+pub use interior::interior_camera;
 pub use resources::{Environment, Images, Materials, Meshes, new_world};
 pub use slots::assign_slots;
 pub use spawn::{StoredAsset, spawn_asset, spawn_stored, store_asset};
 pub use transform::propagate_transforms;
+pub use triangles::{Hit, Triangles};
