@@ -197,7 +197,8 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap, color: bool) -> S
             Ok(text) => out.push_str(&text),
             // Only a label outside of its file gets here; the message alone still says what is wrong.
             Err(_) => {
-                out.push_str(&format!("{}[{}]: {}\n", if diagnostic.is_error() { "error" } else { "warning" }, diagnostic.code, message))
+                let severity = if diagnostic.is_error() { "error" } else { "warning" };
+                out.push_str(&format!("{severity}[{}]: {message}\n", diagnostic.code));
             }
         }
     }

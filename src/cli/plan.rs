@@ -17,9 +17,9 @@ pub(super) fn run(arguments: &PlanArguments) -> bool {
     let scene = arguments.scene.as_ref().map(|path| load_scene(path, None));
     let counts = match scene {
         None => one_of_everything(),
-        Some(Ok(LoadedScene { mut world, diagnostics, sources })) => {
+        Some(Ok(LoadedScene { world, diagnostics, sources })) => {
             report(&diagnostics, &sources);
-            luminaire_scenes::publish::counts(&mut world)
+            luminaire_scenes::publish::counts(&world)
         }
         Some(Err((diagnostics, sources))) => {
             report(&diagnostics, &sources);
