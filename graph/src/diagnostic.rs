@@ -135,7 +135,15 @@ pub fn list_names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
     }
 }
 
-/// Renders problems as text, in the order given, with the lines that they point at. `color` adds ANSI escapes.
+/// Problems beyond this are counted and not shown: the first ones are what people mend.
+const MAX_SHOWN: usize = 100;
+/// Lines longer than this many bytes are not quoted.
+const MAX_QUOTED_LINE: usize = 2000;
+/// Messages are cut to this many characters: they may quote what the author wrote.
+const MAX_MESSAGE: usize = 1000;
+
+/// Renders problems as text, in the order given, with the lines that they point at. `color` adds ANSI escapes. What would fill
+/// the screen with one line, or with thousands of problems, is cut.
 pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap, color: bool) -> String {
     let mut files = SimpleFiles::new();
     for (_, file) in sources.iter() {
@@ -148,29 +156,36 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap, color: bool) -> S
     };
     let config = term::Config { tab_width: 4, ..term::Config::default() };
     let mut out = String::new();
-    for diagnostic in diagnostics {
+    for diagnostic in diagnostics.iter().take(MAX_SHOWN) {
+        let message = clipped(&diagnostic.message);
+        let mut notes = Vec::new();
         let mut labels = Vec::new();
-        if let Some(label) = &diagnostic.primary
+        let spans = diagnostic.primary.iter().chain(&diagnostic.secondary);
+        let quoted = spans.clone().all(|label| line_length(sources, label.span) <= MAX_QUOTED_LINE);
+        if !quoted {
+            notes.extend(spans.filter_map(|label| {
+                let (line, column) = sources.line_column(label.span)?;
+                Some(format!("{}:{line}:{column}: {}", sources.get(label.span.file)?.name, label.text))
+            }));
+        }
+        if let Some(label) = diagnostic.primary.as_ref().filter(|_| quoted)
             && let Some((file, range)) = index_of(label.span)
         {
             labels.push(report::Label::primary(file, range).with_message(&label.text));
         }
-        for label in &diagnostic.secondary {
+        for label in diagnostic.secondary.iter().filter(|_| quoted) {
             if let Some((file, range)) = index_of(label.span) {
                 labels.push(report::Label::secondary(file, range).with_message(&label.text));
             }
         }
-        let mut notes = diagnostic.notes.clone();
+        notes.extend(diagnostic.notes.iter().cloned());
         notes.extend(diagnostic.hint.iter().map(|hint| format!("hint: {hint}")));
         let severity = match diagnostic.severity {
             Severity::Error => report::Severity::Error,
             Severity::Warning => report::Severity::Warning,
         };
-        let shown = report::Diagnostic::new(severity)
-            .with_code(diagnostic.code)
-            .with_message(&diagnostic.message)
-            .with_labels(labels)
-            .with_notes(notes);
+        let shown =
+            report::Diagnostic::new(severity).with_code(diagnostic.code).with_message(&message).with_labels(labels).with_notes(notes);
         let rendered = if color {
             let mut buffer = term::termcolor::Ansi::new(Vec::new());
             term::emit_to_write_style(&mut buffer, &config, &files, &shown)
@@ -181,13 +196,43 @@ pub fn render(diagnostics: &[Diagnostic], sources: &SourceMap, color: bool) -> S
         match rendered {
             Ok(text) => out.push_str(&text),
             // Only a label outside of its file gets here; the message alone still says what is wrong.
-            Err(_) => out.push_str(&format!(
-                "{}[{}]: {}\n",
-                if diagnostic.is_error() { "error" } else { "warning" },
-                diagnostic.code,
-                diagnostic.message
-            )),
+            Err(_) => {
+                let severity = if diagnostic.is_error() { "error" } else { "warning" };
+                out.push_str(&format!("{severity}[{}]: {message}\n", diagnostic.code));
+            }
         }
     }
+    if diagnostics.len() > MAX_SHOWN {
+        out.push_str(&format!("... and {} more\n", diagnostics.len() - MAX_SHOWN));
+    }
     out
+}
+
+fn clipped(text: &str) -> String {
+    match text.char_indices().nth(MAX_MESSAGE) {
+        None => text.to_owned(),
+        Some((end, _)) => format!("{}...", &text[..end]),
+    }
+}
+
+/// Bytes of the line in which a span starts.
+fn line_length(sources: &SourceMap, span: Span) -> usize {
+    let Some((before, after)) = sources.get(span.file).and_then(|file| file.text.split_at_checked(span.start as usize)) else { return 0 };
+    let start = before.rfind('\n').map_or(0, |newline| newline + 1);
+    before.len() - start + after.find('\n').unwrap_or(after.len())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn long_lines_and_many_problems_are_cut() {
+        let mut sources = SourceMap::default();
+        let file = sources.add("long.ron", format!("a\n{}", "x".repeat(1_000_000)));
+        let problem = Diagnostic::error("a::b", "y".repeat(100_000)).at(Span::new(file, 12, 13), "here").hint("shorten it");
+        let text = render(&vec![problem; 5000], &sources, false);
+        assert!(text.len() < 200_000, "{} bytes", text.len());
+        assert!(text.contains("long.ron:2:11: here") && text.contains("hint: shorten it") && text.ends_with("... and 4900 more\n"));
+    }
 }

@@ -373,8 +373,11 @@ fn damaged_files_never_panic(assets: &Path) {
     assert!(loaded > 100, "{loaded} of the damaged files load: the damage is too coarse to test anything");
 }
 
+/// Runs over the assets folder.
+type AssetTest = fn(&Path);
+
 /// The tests, by name.
-const TESTS: &[(&str, fn(&Path))] = &[
+const TESTS: &[(&str, AssetTest)] = &[
     ("every_file_meets_its_expectation", every_file_meets_its_expectation),
     ("refusals_name_their_reason", refusals_name_their_reason),
     ("transforms_and_scenes", transforms_and_scenes),
@@ -388,7 +391,7 @@ const TESTS: &[(&str, fn(&Path))] = &[
 ];
 
 /// Runs where the assets are; says 'ignored' where they are not, which is a failure in CI.
-fn asset_trial(name: &str, test: fn(&Path), assets: Option<&Path>) -> Trial {
+fn asset_trial(name: &str, test: AssetTest, assets: Option<&Path>) -> Trial {
     match assets {
         Some(assets) => {
             let assets = assets.to_owned();

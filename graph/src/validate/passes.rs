@@ -150,6 +150,11 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 }
                 _ => {}
             }
+            if let Some(depth) = depth
+                && !depth.value.slope_bias.is_finite()
+            {
+                bad(scope, name, "its slope bias is not a finite number".to_owned(), None, depth.span);
+            }
             let culling = culling(scope, cull);
             let kind = view.zip(culling).map(|(view, cull)| PassKindDecl::Draw {
                 vertex: vertex.as_ref().map(located),
