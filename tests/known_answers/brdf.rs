@@ -37,15 +37,16 @@ pub fn agrees_with_the_tables() -> Result<(), Failed> {
         let place = |known: &[f64], value: f64| known.iter().position(|known| (known - value).abs() < 1e-6).ok_or("not in the grid");
         let (x, y) = (place(&COSINES, cosine)? as u32, place(&ROUGHNESSES, roughness)? as u32);
         let (a, b) = (number(&row["A"])?, number(&row["B"])?);
-        let (albedo, furnace) = (texel(&images["albedos"], x, y), texel(&images["furnaces"], x, y));
+        let albedo = texel(&images["albedos"], x, y);
+        let dielectric = texel(&images["albedos"], x + 6, y)[0] + texel(&images["furnaces"], x, y)[0];
         let white = &row["furnace_white"];
         let pairs = [
             ("B", albedo[0], b),
             ("A + B", albedo[1], a + b),
             ("A / 2 + B", albedo[2], 0.5 * a + b),
-            ("dielectric", furnace[0], number(&white["metallic_0.000"])?),
-            ("third", furnace[1], number(&white["metallic_0.333"])?),
-            ("metal", furnace[2], number(&white["metallic_1.000"])?),
+            ("dielectric", dielectric, number(&white["metallic_0.000"])?),
+            ("third", (2.0 * dielectric + albedo[1]) / 3.0, number(&white["metallic_0.333"])?),
+            ("metal", albedo[1], number(&white["metallic_1.000"])?),
         ];
         for (what, found, expected) in pairs {
             worst = worst.max((found - expected).abs());
@@ -61,7 +62,7 @@ pub fn agrees_with_the_tables() -> Result<(), Failed> {
 
 fn loses_light() -> Result<(), Failed> {
     let image = shot(&["albedos"]).one(NO_SCENE)?;
-    for (x, y) in places(&image) {
+    for (x, y) in places(&image).filter(|(x, _)| *x < 6) {
         let [black, white, gray, _] = texel(&image, x, y);
         // A white metal keeps 30 % at least (roughness 1, seen from above) and 100 % at most.
         if !(black >= 0.0 && white <= 1.0 + 1e-5 && white > 0.3) || (gray - 0.5 * (black + white)).abs() > 1e-4 {
@@ -92,5 +93,5 @@ fn reciprocal() -> Result<(), Failed> {
 fn metallic_mixes() -> Result<(), Failed> {
     let image = shot(&["furnaces"]).one(NO_SCENE)?;
     // Measured: 3e-7.
-    places(&image).try_for_each(|(x, y)| near(&format!("{x}, {y}"), texel(&image, x, y)[3], 1.0, 2e-6))
+    places(&image).try_for_each(|(x, y)| near(&format!("{x}, {y}"), texel(&image, x, y)[1], 1.0, 2e-6))
 }

@@ -73,11 +73,11 @@ fn square_shadow(light: Light) -> Result<(), Failed> {
             }
         } else if distance > margin * shrink {
             lit += 1;
-            near(&format!("{place:?}, {:.4} m outside of the shadow", distance / shrink), found, 0.5 / PI * lux, 0.0012)?;
+            near(&format!("{place:?}, {:.4} m outside of the shadow", distance / shrink), found, 0.5 / PI * lux, 0.002)?;
         }
     }
     println!("{dark} dark, {lit} lit");
-    if dark > 2000 && lit > 10000 { Ok(()) } else { Err(format!("{dark} dark, {lit} lit").into()) }
+    if dark > 600 && lit > 20000 { Ok(()) } else { Err(format!("{dark} dark, {lit} lit").into()) }
 }
 
 /// A floor, lit from almost the side: every pixel as the formula says.
