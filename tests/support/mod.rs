@@ -2,6 +2,9 @@
 
 #![allow(dead_code, clippy::panic, reason = "each test file uses a part of it; broken reference data should stop the test")]
 
+pub mod gltf;
+pub mod picture;
+
 use std::path::{Path, PathBuf};
 
 use libtest_mimic::{Failed, Trial};

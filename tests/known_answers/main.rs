@@ -1,0 +1,40 @@
+//! Pictures whose pixels are known from formulas: light, materials, shadows, tone mapping, orientation.
+//!
+//! Each rendering is at most 256 by 256 pixels. Tolerances stand near the errors that were measured on Mesa's software driver, which
+//! each test states. Half floats, in which light is accumulated, are good to 2^-10 = 0.098 %: that driver rounds them towards zero.
+
+#[path = "../support/mod.rs"]
+mod support;
+
+mod brdf;
+mod irradiance;
+mod masks;
+mod materials;
+mod orientation;
+mod shadows;
+mod steady;
+mod tone_mapping;
+
+use libtest_mimic::{Arguments, Failed, Trial};
+
+/// A test: its name and what it does.
+type Case = (&'static str, fn() -> Result<(), Failed>);
+
+fn main() {
+    let arguments = Arguments::from_args();
+    let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
+    let groups: [&[Case]; 8] = [
+        brdf::CASES,
+        irradiance::CASES,
+        masks::CASES,
+        materials::CASES,
+        orientation::CASES,
+        shadows::CASES,
+        steady::CASES,
+        tone_mapping::CASES,
+    ];
+    let mut trials: Vec<Trial> = groups.concat().into_iter().map(|(name, run)| support::trial(name, missing, run)).collect();
+    let missing = missing.or(if support::shared().is_some() { None } else { Some("the reference data") });
+    trials.push(support::trial("brdf::agrees with the reference tables", missing, brdf::agrees_with_the_tables));
+    libtest_mimic::run(&arguments, trials).exit();
+}

@@ -1,0 +1,202 @@
+//! Shadows against what rays to the light say: edges, acne, leaks, seams.
+
+use std::f64::consts::PI;
+
+use glam::DVec3;
+use libtest_mimic::Failed;
+use luminaire::image_file::LinearImage;
+
+use crate::Case;
+use crate::support::picture::{Eye, Shot, near, places, texel};
+
+pub const CASES: &[Case] = &[
+    ("shadows::edge of a square under a point light", || square_shadow(Light::Lamp)),
+    ("shadows::edge of a square under the sun", || square_shadow(Light::Sun)),
+    ("shadows::no acne at grazing angles", no_acne_at_grazing_angles),
+    ("shadows::a ball does not shadow itself", ball_does_not_shadow_itself),
+    ("shadows::a thin wall leaks nothing", thin_walls),
+    ("shadows::faces of the cube show no seam", no_seams),
+];
+
+#[derive(Clone, Copy)]
+enum Light {
+    Lamp,
+    Sun,
+}
+
+/// A square of 1 m hovers 1 m above a floor. Exactly dark inside of its shadow and exactly lit outside, but for one texel of the
+/// map on each side of the edge.
+fn square_shadow(light: Light) -> Result<(), Failed> {
+    let eye = Eye::new([0.0, 9.0, 4.0], [0.2, 0.0, 0.0], 22.0);
+    let lamp = DVec3::new(0.6, 3.0, 0.2);
+    let to_sun = DVec3::new(0.5, 1.0, 0.3).normalize();
+    let source = match light {
+        Light::Lamp => "\"lamp\": Point(candela: 20, position: (0.6, 3, 0.2))",
+        Light::Sun => "\"sun\": Directional(lux: 3, direction: (-0.5, -1, -0.3))",
+    };
+    let scene = format!(
+        "({} lights: {{ {source} }}, objects: {{
+            \"floor\": (shape: Plane(size: (6, 6)), surface: (base_color: (0.5, 0.5, 0.5), specular: 0)),
+            \"square\": (shape: Plane(size: (1, 1)), translation: (0.1, 1, 0.05), surface: (specular: 0)) }})",
+        eye.ron()
+    );
+    let image = Shot::pbr(192, &["radiance"]).set("sun_shadow_texels", 256).one(&scene)?;
+    // A texel on the floor: 2 / 256 of the lamp's 3 m of height. The sun's map holds at most the whole floor, whose diagonal is
+    // 8.5 m, in 254 texels; they lie aslant on the floor, and the square's edges aslant to them.
+    let margin = match light {
+        Light::Lamp => 2.0 / 256.0 * 3.0,
+        Light::Sun => 6.0 * 2.0 / 254.0 / to_sun.y,
+    };
+    let (mut dark, mut lit) = (0, 0);
+    for place in places(&image) {
+        let Some(point) = eye.on_plane(&image, place, DVec3::ZERO, DVec3::Y) else { continue };
+        // How far beyond the square's edge a ray passes its plane, metres; negative inside.
+        let beyond = |at: DVec3| (at.x - 0.1).abs().max((at.z - 0.05).abs()) - 0.5;
+        let seen = eye.position + (point - eye.position) * ((eye.position.y - 1.0) / eye.position.y);
+        if beyond(seen) < 0.02 || point.x.abs().max(point.z.abs()) > 2.9 {
+            continue;
+        }
+        let (crossing, shrink, lux) = match light {
+            Light::Lamp => {
+                let to_light = lamp - point;
+                let lux = 20.0 * to_light.y / to_light.length().powi(3);
+                (point + to_light / 3.0, 2.0 / 3.0, lux)
+            }
+            Light::Sun => (point + to_sun / to_sun.y, 1.0, 3.0 * to_sun.y),
+        };
+        let found = texel(&image, place.0, place.1)[0];
+        let distance = beyond(crossing);
+        if distance < -margin * shrink {
+            dark += 1;
+            if found != 0.0 {
+                return Err(format!("{found} at {place:?}, {:.4} m inside of the shadow", -distance / shrink).into());
+            }
+        } else if distance > margin * shrink {
+            lit += 1;
+            near(&format!("{place:?}, {:.4} m outside of the shadow", distance / shrink), found, 0.5 / PI * lux, 0.002)?;
+        }
+    }
+    println!("{dark} dark, {lit} lit");
+    if dark > 600 && lit > 20000 { Ok(()) } else { Err(format!("{dark} dark, {lit} lit").into()) }
+}
+
+/// A floor, lit from almost the side: every pixel as the formula says.
+fn no_acne_at_grazing_angles() -> Result<(), Failed> {
+    let eye = Eye::new([0.0, 3.0, 6.0], [0.0, 0.0, 0.0], 60.0);
+    let floor = "\"floor\": (shape: Plane(size: (40, 40)), surface: (base_color: (0.5, 0.5, 0.5), specular: 0))";
+    let direction = DVec3::new(-1.0, 0.03, 0.4).normalize();
+    let scenes = [
+        "\"lamp\": Point(candela: 50, position: (-1, 0.15, 1))".to_owned(),
+        "\"sun\": Directional(lux: 100, direction: (1, -0.03, -0.4))".to_owned(),
+    ];
+    for (index, light) in scenes.iter().enumerate() {
+        let scene = format!("({} lights: {{ {light} }}, objects: {{ {floor} }})", eye.ron());
+        let image = Shot::pbr(128, &["radiance"]).one(&scene)?;
+        for place in places(&image) {
+            let Some(point) = eye.on_plane(&image, place, DVec3::ZERO, DVec3::Y) else { continue };
+            if point.x.abs().max(point.z.abs()) > 19.9 {
+                continue;
+            }
+            let to_lamp = DVec3::new(-1.0, 0.15, 1.0) - point;
+            let lux = if index == 0 { 50.0 * to_lamp.y / to_lamp.length().powi(3) } else { 100.0 * direction.y };
+            let (found, expected) = (texel(&image, place.0, place.1)[0], 0.5 / PI * lux);
+            // Depth rounds the distance to the floor, which the cosine shows. Measured: 0.25 %, near the horizon.
+            if (found - expected).abs() > 0.005 * expected + 1e-5 {
+                return Err(format!("{found} at {place:?}, {point}, not {expected}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// How many pixels a shadow map makes darker by more than the last bit of a half float, of how many that are lit.
+fn darkened(with: &LinearImage, without: &LinearImage) -> [usize; 2] {
+    let mut count = [0, 0];
+    for (x, y) in places(without) {
+        let (a, b) = (texel(with, x, y)[0], texel(without, x, y)[0]);
+        // Four weights need not add up to 1 exactly.
+        count[0] += usize::from((a - b).abs() > 0.001 * b);
+        count[1] += usize::from(b > 0.0);
+    }
+    count
+}
+
+/// A convex body hides nothing of itself that faces the light: the picture is the one without shadow maps.
+fn ball_does_not_shadow_itself() -> Result<(), Failed> {
+    let eye = Eye::new([0.0, 0.5, 5.0], [0.0, 0.0, 0.0], 30.0);
+    let shot = Shot::pbr(192, &["radiance"]);
+    // Facets coarser than the map, about as fine, and far finer.
+    for (sectors, stacks) in [(24, 12), (128, 64), (1024, 512)] {
+        let scene = |lights: &str| {
+            format!(
+                "({} lights: {{ {lights} }}, objects: {{
+                    \"ball\": (shape: Sphere(radius: 1, sectors: {sectors}, stacks: {stacks}), surface: (specular: 0)) }})",
+                eye.ron()
+            )
+        };
+        let lamp = scene("\"lamp\": Point(candela: 30, position: (3, 1, 1))");
+        let sun = "\"sun\": Directional(lux: 3, direction: (-3, -1, -1))";
+        // The second directional light has no shadow.
+        let second = scene(&format!("\"none\": Directional(lux: 0, direction: (0, -1, 0)), {sun}"));
+        let pairs = [
+            ("lamp", shot.one(&lamp)?, shot.clone().set("shadowed_local_lights", 0).one(&lamp)?),
+            ("sun", shot.one(&scene(sun))?, shot.one(&second)?),
+        ];
+        for (name, with, without) in pairs {
+            let [wrong, lit] = darkened(&with, &without);
+            println!("{name}, {sectors} sectors: {wrong} of {lit}");
+            if wrong * 200 > lit || lit < 3000 {
+                return Err(format!("{name}, {sectors} sectors: of {lit} lit pixels a shadow map darkens {wrong}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// A closed room of 2 m with walls of 2 cm, lights outside, the camera inside: not little light, none.
+fn thin_walls() -> Result<(), Failed> {
+    let mut walls = String::new();
+    for (axis, name) in ["x", "y", "z"].iter().enumerate() {
+        for side in [-1.0, 1.0] {
+            let (mut place, mut size) = ([0.0; 3], [2.04; 3]);
+            (place[axis], size[axis]) = (side * 1.01, 0.02);
+            walls += &format!("\"{name}{side}\": (shape: Box(size: {size:?}), translation: {place:?}, surface: (specular: 0)),")
+                .replace('[', "(")
+                .replace(']', ")");
+        }
+    }
+    for (target, light) in [
+        ([1.0, 0.2, 0.3], "\"lamp\": Point(candela: 1000, position: (2.5, 1.7, 1.2))"),
+        ([-0.3, -1.0, 0.4], "\"lamp\": Point(candela: 1000, position: (1.3, 0, 0))"),
+        ([-0.6, -0.9, -0.5], "\"sun\": Directional(lux: 1000, direction: (-1, -2, -0.7))"),
+    ] {
+        let eye = Eye::new([0.1, 0.2, 0.3], target, 100.0);
+        let scene = format!("({} lights: {{ {light} }}, objects: {{ {walls} }})", eye.ron());
+        let shot = Shot::pbr(128, &["radiance"]).set("local_shadow_texels", 1024).set("sun_shadow_texels", 1024);
+        let image = shot.one(&scene)?;
+        let leaks: Vec<_> = places(&image).filter(|(x, y)| texel(&image, *x, *y)[..3] != [0.0; 3]).take(5).collect();
+        if !leaks.is_empty() {
+            return Err(format!("{light} shines into the room at {leaks:?}").into());
+        }
+    }
+    Ok(())
+}
+
+/// A lamp within a room, off its middle, so that the edges of the cube's faces run across the walls: as bright as without maps.
+fn no_seams() -> Result<(), Failed> {
+    for target in [[1.0, 0.9, 0.8], [-1.0, -0.8, 0.9], [0.9, -0.7, -1.0]] {
+        let eye = Eye::new([0.0, 0.1, 0.0], target, 110.0);
+        let scene = format!(
+            "({} lights: {{ \"lamp\": Point(candela: 10, position: (0.3, -0.2, 0.4)) }},
+            objects: {{ \"room\": (shape: Box(size: (4, 3, 5)), surface: (specular: 0)) }})",
+            eye.ron()
+        );
+        let shot = Shot::pbr(128, &["radiance"]);
+        let (with, without) = (shot.one(&scene)?, shot.clone().set("shadowed_local_lights", 0).one(&scene)?);
+        let [wrong, lit] = darkened(&with, &without);
+        if wrong > 0 || lit != 128 * 128 {
+            return Err(format!("{wrong} of {lit} pixels are darker, looking to {target:?}").into());
+        }
+    }
+    Ok(())
+}
