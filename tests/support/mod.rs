@@ -1,6 +1,13 @@
 //! Shared by the tests: reference data, image metrics, and tests that say 'ignored' where something is missing.
 
-#![allow(dead_code, clippy::panic, reason = "each test file uses a part of it; broken reference data should stop the test")]
+#![allow(
+    dead_code,
+    clippy::expect_used,
+    clippy::panic,
+    clippy::print_stdout,
+    clippy::needless_pass_by_value,
+    reason = "each test file uses a part of it; broken reference data should stop the test"
+)]
 
 pub mod gltf;
 pub mod picture;
