@@ -260,7 +260,7 @@ fn broken_models() -> Result<(), Failed> {
 
 fn main() {
     let arguments = Arguments::from_args();
-    let adapter = (!Adapter::choose(None).is_ok()).then_some("a Vulkan adapter");
+    let adapter = Adapter::choose(None).is_err().then_some("a Vulkan adapter");
     let data = shared().is_none().then_some("the reference data");
     let trials: Vec<Trial> = vec![
         trial("bad input is refused", adapter, bad_input),

@@ -1,5 +1,7 @@
 //! The reference of the pipeline language is true: its examples compile, and it mentions everything that can be named.
 
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
+
 use std::path::Path;
 
 use luminaire::files::DiskFiles;
