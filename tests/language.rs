@@ -1,6 +1,6 @@
 //! The reference of the pipeline language is true: its examples compile, and it mentions everything that can be named.
 
-#![allow(clippy::unwrap_used, reason = "a test stops where it can't go on")]
+#![allow(clippy::unwrap_used, clippy::panic, reason = "helpers of tests")]
 
 use std::path::Path;
 

@@ -127,8 +127,11 @@ impl Gltf {
         file.to_string()
     }
 
-    /// The world that the loader makes of it, by way of a file.
-    pub fn world(&self) -> Result<World, Failed> {
+    /// The world that the loader makes of it, by way of a file. Where there is no light, a dark one keeps the default ones away.
+    pub fn world(mut self) -> Result<World, Failed> {
+        if self.lights.is_empty() {
+            self.sun(0.0);
+        }
         let folder = tempfile::tempdir()?;
         let path = folder.path().join("scene.gltf");
         std::fs::write(&path, self.text())?;
