@@ -128,7 +128,7 @@ impl Gltf {
     }
 
     /// The world that the loader makes of it, by way of a file. Where there is no light, a dark one keeps the default ones away.
-    pub fn world(mut self) -> Result<World, Failed> {
+    pub fn world(&mut self) -> Result<World, Failed> {
         if self.lights.is_empty() {
             self.sun(0.0);
         }
