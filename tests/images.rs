@@ -21,7 +21,7 @@ type Golden = (&'static str, &'static str, &'static str, &'static [(&'static str
 const GOLDEN: &[Golden] = &[
     ("albedo_still_life", ALBEDO, "still_life", &[]),
     ("pbr_still_life", PBR, "still_life", &[]),
-    ("pbr_still_life_neutral", PBR, "still_life", &[("tone_mapping", "neutral"), ("exposure", "0.5"), ("culling", "back")]),
+    ("pbr_still_life_neutral", PBR, "still_life", &[("tone_mapping", "neutral"), ("exposure", "0.5")]),
     ("pbr_night_room", PBR, "night_room", &[]),
     ("pbr_night_room_aces", PBR, "night_room", &[("tone_mapping", "aces"), ("shadowed_local_lights", "1")]),
 ];

@@ -7,9 +7,8 @@ use std::collections::HashMap;
 use super::environment::Environment;
 use super::error::ExpandError;
 use super::types::{Located, PartRef, Pass, PassId, PassKind, Resource, Shape, Slot, Value, Work};
-use crate::plan::Cull;
 use crate::published::ViewKind;
-use crate::validate::types::{Condition, CullDecl, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
+use crate::validate::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
 use crate::validate::without_indices;
 
 /// Pipelines longer than this are refused.
@@ -150,7 +149,7 @@ impl Unroller<'_, '_> {
                     }
                 },
                 depth: *depth,
-                cull: self.cull(cull, name)?,
+                cull: *cull,
                 blend: blend.clone(),
             },
             PassKindDecl::Fullscreen { entry, blend } => PassKind::Fullscreen { entry: entry.clone(), blend: blend.clone() },
@@ -168,23 +167,6 @@ impl Unroller<'_, '_> {
             PassKindDecl::Copy => PassKind::Copy,
             PassKindDecl::Clear { value } => PassKind::Clear { value: *value },
         })
-    }
-
-    fn cull(&mut self, cull: &CullDecl, name: &str) -> Option<Cull> {
-        let param = match cull {
-            CullDecl::Fixed(cull) => return Some(*cull),
-            CullDecl::Param(param) => self.environment.params.iter().find(|param_value| param_value.name == *param)?,
-        };
-        match &param.value {
-            Value::Word(_, word) if word == "none" => Some(Cull::None),
-            Value::Word(_, word) if word == "front" => Some(Cull::Front),
-            Value::Word(_, word) if word == "back" => Some(Cull::Back),
-            other => {
-                let reason = format!("the parameter `{}` is `{other}`, and must be the word `none`, `front` or `back`", param.name);
-                let span = param.span;
-                self.environment.bad(&format!("what `{name}` culls"), reason, span)
-            }
-        }
     }
 
     fn small(&mut self, expr: &PlacedExpr, what: &str, name: &str) -> Option<u32> {

@@ -261,8 +261,8 @@ pub enum CompareDoc {
     Always,
 }
 
-/// Which side of a triangle is left out. Surfaces of double-sided materials are never culled; mirrored ones are handled.
-#[derive(Debug, Clone, PartialEq, Eq, Default, Deserialize)]
+/// Which side of a triangle is left out. Surfaces that the scene calls double-sided are never culled; mirrored ones are handled.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Default, Deserialize)]
 #[serde(rename = "Cull")]
 pub enum CullDoc {
     /// Draw both sides.
@@ -272,8 +272,6 @@ pub enum CullDoc {
     /// Leave out the back.
     #[default]
     Back,
-    /// As a parameter says whose options are some of `none`, `front` and `back`.
-    Param(Text),
 }
 
 /// How a color output is combined with what is there.

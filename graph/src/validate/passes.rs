@@ -3,7 +3,7 @@
 use super::error::ValidateError;
 use super::resources::plain_clear;
 use super::scope::Scope;
-use super::types::{Condition, CullDecl, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
+use super::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
 use crate::expand::types::Located;
 use crate::plan::Cull;
 use crate::published::DrawFilter;
@@ -155,14 +155,13 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
             {
                 bad(scope, name, "its slope bias is not a finite number".to_owned(), None, depth.span);
             }
-            let culling = culling(scope, cull);
-            let kind = view.zip(culling).map(|(view, cull)| PassKindDecl::Draw {
+            let kind = view.map(|view| PassKindDecl::Draw {
                 vertex: vertex.as_ref().map(located),
                 fragment: fragment.as_ref().map(located),
                 objects: filter(*objects),
                 view,
                 depth: depth.as_ref().map(|depth| depth.value),
-                cull,
+                cull: culling(*cull),
                 blend: blends(scope, name, blend, write, modify),
             });
             (Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) }, kind)
@@ -317,18 +316,12 @@ fn condition(scope: &mut Scope<'_>, when: Option<&Expr>, has: Option<&Text>) -> 
     Some(Condition { when: when?, has: has.map(|has| has.value.clone()) })
 }
 
-fn culling(scope: &mut Scope<'_>, cull: &CullDoc) -> Option<CullDecl> {
-    Some(CullDecl::Fixed(match cull {
+fn culling(cull: CullDoc) -> Cull {
+    match cull {
         CullDoc::None => Cull::None,
         CullDoc::Front => Cull::Front,
         CullDoc::Back => Cull::Back,
-        CullDoc::Param(name) if scope.params.contains(&name.value.as_str()) => return Some(CullDecl::Param(name.value.clone())),
-        CullDoc::Param(name) => {
-            let known = scope.params.iter().map(|param| (*param).to_owned()).collect();
-            scope.report(ValidateError::Unknown { what: "parameter", name: name.value.clone(), known, span: name.span });
-            return None;
-        }
-    }))
+    }
 }
 
 fn filter(objects: ObjectsDoc) -> DrawFilter {

@@ -190,7 +190,7 @@ pub enum PassKindDecl {
         objects: DrawFilter,
         view: View,
         depth: Option<DepthDoc>,
-        cull: CullDecl,
+        cull: Cull,
         blend: Vec<(Located<String>, BlendDoc)>,
     },
     Fullscreen {
@@ -205,15 +205,6 @@ pub enum PassKindDecl {
     Clear {
         value: Option<ClearValue>,
     },
-}
-
-/// Which side of a triangle is left out.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub enum CullDecl {
-    /// Always this one.
-    Fixed(Cull),
-    /// As this parameter's word says; its options are `none`, `front` and `back`.
-    Param(String),
 }
 
 /// From where a Draw draws.

@@ -6,7 +6,7 @@ use glam::{Affine3A, DVec3, Mat4, Vec3};
 
 use super::layout::InstanceRow;
 use crate::asset::{AlphaMode, Material};
-use crate::world::{GlobalTransform, MeshInstance, ObjectSlot, WorldBounds};
+use crate::world::{GlobalTransform, MeshInstance, ObjectSlot, WorldBounds, solid_meshes};
 
 /// How an object's surface covers what is behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -33,6 +33,7 @@ pub(super) struct Object {
     pub(super) mesh: usize,
     pub(super) material: usize,
     pub(super) mirrored: bool,
+    /// Drawn from both sides.
     pub(super) double_sided: bool,
     pub(super) coverage: Coverage,
     /// Of its bounds.
@@ -42,6 +43,7 @@ pub(super) struct Object {
 
 /// Every object with a finite transform, a mesh and a material, by slot.
 pub(super) fn collect(world: &mut World, mesh_count: usize, materials: &[Material]) -> Vec<Object> {
+    let solid = solid_meshes(world);
     let mut query = world.query::<(&MeshInstance, &ObjectSlot, &GlobalTransform, &WorldBounds)>();
     let mut objects: Vec<Object> = query
         .iter(world)
@@ -50,13 +52,14 @@ pub(super) fn collect(world: &mut World, mesh_count: usize, materials: &[Materia
             if instance.mesh >= mesh_count || !transform.0.is_finite() {
                 return None;
             }
+            let coverage = Coverage::of(material);
             Some(Object {
                 slot: slot.0,
                 mesh: instance.mesh,
                 material: instance.material,
                 mirrored: determinant(transform.0) < 0.0,
-                double_sided: material.double_sided,
-                coverage: Coverage::of(material),
+                double_sided: material.double_sided || (coverage == Coverage::Opaque && solid.get(instance.mesh) == Some(&true)),
+                coverage,
                 center: bounds.bounds?.center().as_dvec3(),
                 world_from_object: transform.0,
             })
