@@ -114,8 +114,8 @@ fn distance_thins_nothing_out() -> Result<(), Failed> {
         let drawn = places(&images["albedo"]).filter(|(x, y)| texel(&images["albedo"], *x, *y)[3] == 1.0).count() as f64;
         let coverage = drawn / (edge * edge);
         println!("{distance} m: {coverage:.3} of {truth:.3}");
-        // Measured: see the end of each line that this prints; the last one has 64 pixels in all.
-        let tolerance = if distance < 16.0 { 0.05 } else { 0.1 };
+        // Measured: 0.006 at 1 m to 0.057 at 16 m, where the quad has 64 pixels in all.
+        let tolerance = if distance < 16.0 { 0.045 } else { 0.08 };
         if (coverage - truth).abs() > tolerance {
             return Err(format!("at {distance} m {coverage} of the quad is drawn, and {truth} of the texture is opaque").into());
         }
