@@ -28,7 +28,7 @@ fn codes(text: &str) -> Vec<&'static str> {
 
 #[test]
 fn shipped_scenes_load() {
-    for (text, expected) in [(CORNELL, [0, 1, 0, 1, 7, 0, 0]), (MATERIALS, [1, 1, 0, 1, 30, 0, 0])] {
+    for (text, expected) in [(CORNELL, [0, 1, 0, 1, 7, 0, 0]), (MATERIALS, [1, 2, 0, 2, 32, 0, 0])] {
         let scene = load_scene_text("shipped.ron", text, &mut SourceMap::default()).unwrap();
         assert!(scene.warnings.is_empty());
         let counts: Vec<u32> = counts(&scene.world).into_values().collect();
