@@ -4,7 +4,7 @@
 //! rendered as the new reference; look at it before it is committed. A picture that fails is kept beside its reference as
 //! `NAME.actual.png`.
 
-#![allow(clippy::print_stdout, reason = "the figures are worth seeing")]
+#![allow(clippy::print_stdout, clippy::panic, clippy::expect_used, reason = "a test says what it measured, and may panic")]
 
 #[path = "support/mod.rs"]
 mod support;

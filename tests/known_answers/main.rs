@@ -3,7 +3,7 @@
 //! Each rendering is at most 256 by 256 pixels. Tolerances stand near the errors that were measured on Mesa's software driver, which
 //! each test states. Half floats, in which light is accumulated, are good to 2^-10 = 0.098 %: that driver rounds them towards zero.
 
-#![allow(clippy::print_stdout, reason = "the figures are worth seeing")]
+#![allow(clippy::print_stdout, clippy::panic, clippy::expect_used, reason = "a test says what it measured, and may panic")]
 
 #[path = "../support/mod.rs"]
 mod support;

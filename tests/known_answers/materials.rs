@@ -12,6 +12,7 @@ use crate::support::picture::{Shot, near, places, texel};
 
 pub const CASES: &[Case] = &[
     ("materials::a back face is lit from its own side", back_faces),
+    ("materials::a mapped normal turns with its back face", mapped_back_face),
     ("materials::culling spares double-sided surfaces", culling),
     ("materials::a mirrored instance looks mirrored", mirrored_instance),
     ("materials::unlit takes no light", unlit),
@@ -67,6 +68,29 @@ fn back_faces() -> Result<(), Failed> {
         let normal = middle(&images["normal"]);
         if (normal[2] - 1.0).abs() > 1e-3 {
             return Err(format!("the normal is {normal:?}, away from the camera").into());
+        }
+    }
+    Ok(())
+}
+
+/// glTF 2.0, section 3.9.5: on a back face the whole mapped normal turns, not only its part along the surface's normal.
+fn mapped_back_face() -> Result<(), Failed> {
+    let mapped = glam::DVec3::new(166.0, 90.0, 230.0) / 255.0 * 2.0 - 1.0;
+    let [x, y, z] = mapped.normalize().to_array();
+    // Half a turn about +Y takes x and z to the other side; the back face then turns all three.
+    for (rotation, expected) in [([0, 0, 0, 1], [x, y, z]), ([0, 1, 0, 0], [x, -y, z])] {
+        let mut scene = scene();
+        let map = scene.texture(2, true, |_, _| [166, 90, 230, 255]);
+        let mut material = lambert([0.5, 0.5, 0.5, 1.0]);
+        (material["normalTexture"], material["doubleSided"]) = (json!({ "index": map }), true.into());
+        let material = scene.material(material);
+        let quad = scene.quad(material, None);
+        scene.node(json!({ "mesh": quad, "rotation": rotation }));
+        let images = shot(&["normal"]).take_world(&mut scene.world()?)?;
+        let found = middle(&images["normal"]);
+        // Half floats towards zero.
+        if (0..3).any(|axis| (found[axis] - expected[axis]).abs() > 0.001) {
+            return Err(format!("the normal is {found:?}, not {expected:?}").into());
         }
     }
     Ok(())

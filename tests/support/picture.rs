@@ -58,6 +58,7 @@ impl Shot {
     }
 
     /// Sets a parameter; the last of two wins.
+    #[allow(clippy::needless_pass_by_value, reason = "calls read better with plain numbers")]
     pub fn set(mut self, name: &str, value: impl ToString) -> Shot {
         self.sets.retain(|(known, _)| known != name);
         self.sets.push((name.to_owned(), value.to_string()));
