@@ -64,7 +64,7 @@ fn back_faces() -> Result<(), Failed> {
             scene.node(json!({ "mesh": quad, "rotation": [0, 1, 0, 0] }));
             scene.point_light(10.0, [0.0, 0.0, lamp]);
             let images = shot(&["radiance", "normal"]).take_world(&mut scene.world()?)?;
-            // Measured: 0.03 %; see the top for half floats.
+            // Measured: 0.052 %; half floats, see main.rs.
             near(&format!("lamp at {lamp}"), middle(&images["radiance"])[0], expected, 0.0012)?;
             let normal = middle(&images["normal"]);
             if (normal[2] - 1.0).abs() > 1e-3 {
@@ -90,7 +90,7 @@ fn mapped_back_face() -> Result<(), Failed> {
         scene.node(json!({ "mesh": quad, "rotation": rotation }));
         let images = shot(&["normal"]).take_world(&mut scene.world()?)?;
         let found = middle(&images["normal"]);
-        // Half floats towards zero.
+        // Half floats towards zero, and 8 bits of the map; measured: 0.0004.
         if (0..3).any(|axis| (found[axis] - expected[axis]).abs() > 0.001) {
             return Err(format!("the normal is {found:?}, not {expected:?}").into());
         }
@@ -184,7 +184,7 @@ fn blended() -> Result<(), Failed> {
         if (wall - behind).abs() > 0.05 {
             return Err(format!("the wall has {wall}, not about {behind}").into());
         }
-        // Half floats twice; measured: 0.06 %.
+        // Half floats twice; measured: 0.070 %.
         near("blended", found[channel], 0.25 * straight(0.8) + 0.75 * wall, 0.0015)?;
     }
     if middle(&image["albedo"])[0] == 0.0 { Ok(()) } else { Err("a blended surface stands in the G-buffer".into()) }
