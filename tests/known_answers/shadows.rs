@@ -77,6 +77,7 @@ fn square_shadow(light: Light) -> Result<(), Failed> {
             }
         } else if distance > margin * shrink {
             lit += 1;
+            // Half floats, and depth; measured: 0.15 %.
             near(&format!("{place:?}, {:.4} m outside of the shadow", distance / shrink), found, 0.5 / PI * lux, 0.002)?;
         }
     }
@@ -104,8 +105,8 @@ fn no_acne_at_grazing_angles() -> Result<(), Failed> {
             let to_lamp = DVec3::new(-1.0, 0.15, 1.0) - point;
             let lux = if index == 0 { 50.0 * to_lamp.y / to_lamp.length().powi(3) } else { 100.0 * direction.y };
             let (found, expected) = (texel(&image, place.0, place.1)[0], 0.5 / PI * lux);
-            // Depth rounds the distance to the floor, which the cosine shows. Measured: 0.25 %, near the horizon.
-            if (found - expected).abs() > 0.005 * expected + 1e-5 {
+            // Depth rounds the distance to the floor, which the cosine shows. Measured: 0.14 %.
+            if (found - expected).abs() > 0.002 * expected + 1e-5 {
                 return Err(format!("{found} at {place:?}, {point}, not {expected}").into());
             }
         }

@@ -24,7 +24,7 @@ fn curve(name: &str, exposure: f64) -> Result<(LinearImage, LinearImage), Failed
     Ok((images.remove("ramp").ok_or("no ramp")?, images.remove("curve").ok_or("no curve")?))
 }
 
-/// Compares a curve with a formula on each texel. Measured: 3e-7 at most, of values up to 1.
+/// Compares a curve with a formula on each texel. Measured: 1.0e-7 at most, of values up to 1.
 fn agrees(name: &str, exposure: f64, formula: impl Fn([f64; 3]) -> [f64; 3]) -> Result<(), Failed> {
     let (ramp, curve) = curve(name, exposure)?;
     let mut worst = 0.0f64;
@@ -34,7 +34,7 @@ fn agrees(name: &str, exposure: f64, formula: impl Fn([f64; 3]) -> [f64; 3]) -> 
         for channel in 0..3 {
             let error = (found[channel] - expected[channel].clamp(0.0, 1.0)).abs();
             worst = worst.max(error);
-            if error > 2e-6 {
+            if error > 5e-7 {
                 return Err(format!("{name} makes {found:?} of {:?}, not {expected:?}", [r, g, b]).into());
             }
         }
@@ -77,10 +77,10 @@ fn neutral() -> Result<(), Failed> {
 fn every_curve_rises() -> Result<(), Failed> {
     for name in ["none", "reinhard", "aces", "agx", "neutral"] {
         let (_, curve) = curve(name, 0.0)?;
-        // Black stays black, in 8 bits; white comes near 1; gray stays gray. Measured: AgX ends at 0.98, and its matrices are
-        // off gray by 1e-3.
+        // Black stays black, in 8 bits; white comes near 1; gray stays gray. Measured: AgX ends at
+        // 0.9965, and its matrices are off gray by 5e-4; black is 0.
         let (black, white) = (texel(&curve, 0, 0), texel(&curve, 255, 0));
-        if black[..3].iter().any(|value| *value > 0.0003) || white[..3].iter().any(|value| *value < 0.95) {
+        if black[..3].iter().any(|value| *value > 0.0) || white[..3].iter().any(|value| *value < 0.99) {
             return Err(format!("{name}: black is {black:?}, white {white:?}").into());
         }
         let mut before = [0.0; 3];
@@ -89,7 +89,7 @@ fn every_curve_rises() -> Result<(), Failed> {
             if (0..3).any(|channel| !(-1e-6..=1.0).contains(&[r, g, b][channel]) || [r, g, b][channel] < before[channel] - 1e-6) {
                 return Err(format!("{name} falls from {before:?} to {:?} at column {x}", [r, g, b]).into());
             }
-            if (r - g).abs().max((g - b).abs()) > 2e-3 {
+            if (r - g).abs().max((g - b).abs()) > 1e-3 {
                 return Err(format!("{name} colours gray: {:?}", [r, g, b]).into());
             }
             before = [r, g, b];
