@@ -16,7 +16,7 @@ use crate::world::{
 const ILLUMINANCE: f32 = PI;
 /// From a thing to the sun, seen from its camera: to the left, up, and towards the viewer. What the camera sees is lit.
 const TO_SUN: DVec3 = DVec3::new(-0.5, 1.0, 0.8);
-/// The same inside of a room: steep, so that it reaches the ground of a court, and along the view.
+/// The same inside of a room: steep, so that it reaches the ground of a court, and from behind, a little to the left.
 const TO_SUN_OF_ROOM: DVec3 = DVec3::new(-0.15, 1.0, 0.45);
 /// What is seen where nothing stands, nits.
 const SKY: Vec3 = Vec3::new(0.25, 0.37, 0.55);
