@@ -67,10 +67,11 @@ fn solid_objects_share_a_call_per_material_mesh_and_orientation() {
         .map(|batch| (batch.material, batch.first_index, batch.mirrored, batch.double_sided, slots(&published, batch)))
         .collect();
     let expected = [
-        (0, 0, false, false, vec![2, 4]),
-        (0, 0, true, false, vec![3]),
-        (0, 36, false, false, vec![1]),
-        (1, 0, false, false, vec![0]),
+        // Boxes are solids, whose backs are drawn.
+        (0, 0, false, true, vec![2, 4]),
+        (0, 0, true, true, vec![3]),
+        (0, 36, false, true, vec![1]),
+        (1, 0, false, true, vec![0]),
         (2, 36, false, true, vec![5]),
     ];
     assert_eq!(seen, expected);
