@@ -8,7 +8,7 @@ use luminaire_graph::diagnostic::Diagnostic;
 
 use crate::asset::Asset;
 use crate::world::{
-    Aabb, DirectionalLight, Environment, LocalLight, Name, Transform, Triangles, assign_slots, camera_pose, interior_camera, look_at,
+    Aabb, DirectionalLight, Environment, LocalLight, Name, Transform, assign_slots, camera_inside, camera_pose, look_at,
     propagate_transforms, scene_bounds, update_bounds,
 };
 
@@ -35,7 +35,7 @@ pub(super) fn add(world: &mut World, file: &str) -> Diagnostic {
     propagate_transforms(world);
     update_bounds(world);
     let bounds = scene_bounds(world);
-    let room = bounds.filter(|bounds| interior_camera(&Triangles::of_world(world), *bounds).is_some());
+    let room = bounds.filter(|bounds| camera_inside(world, *bounds).is_some());
     let (right, up, back) = look_at(-to_sun(world, bounds, room.is_some()));
     let axes = Mat3::from_cols(right.as_vec3(), up.as_vec3(), back.as_vec3());
     let sun = DirectionalLight { color: Vec3::ONE, illuminance: ILLUMINANCE };

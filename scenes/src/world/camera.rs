@@ -3,7 +3,7 @@
 //! A camera's pose is rigid whatever its node's transform is: scale, shear and mirroring are taken out, and a degenerate axis
 //! falls back to a fixed one. A scene without cameras gets one that frames it, or stands in it if it is a room.
 
-use bevy_ecs::prelude::{Entity, World};
+use bevy_ecs::prelude::{Entity, Resource, World};
 use glam::{Affine3A, DVec3, Mat3A, Vec3};
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 
@@ -59,10 +59,26 @@ pub fn camera_pose(world: &mut World, name: Option<&str>, bounds: Option<Aabb>, 
     Ok(CameraPose { position, right, up, back, projection: camera.projection, ev100: camera.ev100 })
 }
 
+/// The last search for a room: it goes through all triangles, and is made again only when the bounds have changed.
+#[derive(Resource, Debug)]
+struct LastSearch {
+    bounds: Aabb,
+    found: Option<CameraPose>,
+}
+
+/// The camera inside of a scene that is a room, as [`interior_camera`] finds it. Needs propagated transforms.
+pub(crate) fn camera_inside(world: &mut World, bounds: Aabb) -> Option<CameraPose> {
+    if let Some(last) = world.get_resource::<LastSearch>().filter(|last| last.bounds == bounds) {
+        return last.found;
+    }
+    let found = interior_camera(&Triangles::of_world(world), bounds);
+    world.insert_resource(LastSearch { bounds, found });
+    found
+}
+
 /// The camera of a scene that has none: inside of a room, else one that frames the scene.
 fn default_camera(world: &mut World, bounds: Option<Aabb>, aspect: f64) -> CameraPose {
-    let inside = bounds.and_then(|bounds| interior_camera(&Triangles::of_world(world), bounds));
-    inside.unwrap_or_else(|| framing_camera(bounds, aspect))
+    bounds.and_then(|bounds| camera_inside(world, bounds)).unwrap_or_else(|| framing_camera(bounds, aspect))
 }
 
 /// A camera that sees all of the bounds, from the front, a little from the right and above, with a vertical field of view of

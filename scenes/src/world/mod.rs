@@ -20,6 +20,7 @@ pub use bevy_ecs::hierarchy::{ChildOf, Children};
 pub use bevy_ecs::name::Name;
 pub use bevy_ecs::world::World;
 pub use bounds::{Aabb, WorldBounds, scene_bounds, update_bounds};
+pub(crate) use camera::camera_inside;
 pub use camera::{CameraPose, camera_pose, framing_camera, look_at, rigid_axes, select_camera};
 pub use components::{
     Camera, CameraSlot, Cone, DirectionalLight, DirectionalSlot, GlobalTransform, LocalLight, LocalSlot, MeshInstance, ObjectSlot,
