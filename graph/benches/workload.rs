@@ -12,7 +12,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::expand::types::*;
 use luminaire_graph::format::Format;
 use luminaire_graph::lifetime::lifetimes;
-use luminaire_graph::plan::{Access, Role, Step, StepKind, Use};
+use luminaire_graph::plan::{Access, Role, Step, StepKind, Use, Workgroups};
 use luminaire_graph::schedule::schedule;
 use luminaire_graph::source::Span;
 use serde_json::Value as Json;
@@ -54,7 +54,7 @@ fn resource(json: &Json) -> Resource {
             samples: 1,
         }),
     };
-    Resource { name: json["name"].as_str().unwrap().to_owned(), span: Span::NOWHERE, shape, clear: None }
+    Resource { name: json["name"].as_str().unwrap().to_owned(), span: Span::NOWHERE, shape, clear: None, history: None, keep: Keep::Auto }
 }
 
 fn bound(json: &Json) -> Bound {
@@ -101,8 +101,11 @@ fn bound(json: &Json) -> Bound {
             writes: Vec::new(),
             modifies: Vec::new(),
             after: Vec::new(),
+            run: Run::OnChange,
+            batch: None,
+            elements: Vec::new(),
         });
-        let kind = StepKind::Compute { entry: String::new(), groups: [1, 1, 1] };
+        let kind = StepKind::Compute { entry: String::new(), groups: Workgroups::Fixed([1, 1, 1]) };
         steps.push(Step {
             pass,
             name,
@@ -113,19 +116,40 @@ fn bound(json: &Json) -> Bound {
             constants: Vec::new(),
             clears: Vec::new(),
             uses,
+            run: Run::OnChange,
+            batch: Vec::new(),
+            inputs: Vec::new(),
         });
     }
     let output = |name: &Json| Output {
         name: name.as_str().unwrap().to_owned(),
-        part: PartRef { resource: ResourceId(ids[name.as_str().unwrap()]), mip: None, layer: None, version: None, span: Span::NOWHERE },
+        part: PartRef { resource: ResourceId(ids[name.as_str().unwrap()]), mips: None, layers: None, version: None, span: Span::NOWHERE },
     };
     let outputs = json["outputs"].as_array().unwrap().iter().map(output).collect();
     let formats = resources
         .iter()
         .map(|resource| if let Shape::Texture(shape) = &resource.shape { shape.formats.first().copied() } else { None })
         .collect();
-    let expanded = Expanded { doc: String::new(), params: Vec::new(), resources, passes, outputs, offered: Vec::new() };
-    Bound { expanded, shaders: Vec::new(), steps, formats, views: Vec::new(), draw_lists: Vec::new(), requirements: Vec::new() }
+    let expanded = Expanded {
+        doc: String::new(),
+        params: Vec::new(),
+        resources,
+        passes,
+        spreads: Vec::new(),
+        retained_budget: None,
+        outputs,
+        offered: Vec::new(),
+    };
+    Bound {
+        expanded,
+        shaders: Vec::new(),
+        steps,
+        formats,
+        views: Vec::new(),
+        draw_lists: Vec::new(),
+        inputs: Vec::new(),
+        requirements: Vec::new(),
+    }
 }
 
 /// Seconds that this thread has run, since machines are shared; Linux only.

@@ -7,7 +7,7 @@ use crate::allocate::Allocation;
 use crate::bind::types::Bound;
 use crate::expand::types::{PassId, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
-use crate::plan::{BindingTarget, MemoryKind, Plan, PlannedOutput, PlannedResource, PlannedShape, Step, StepKind};
+use crate::plan::{BindingTarget, InputId, MemoryKind, Plan, PlannedOutput, PlannedResource, PlannedShape, Step, StepKind};
 use crate::schedule::Schedule;
 use crate::schedule::part::Rect;
 
@@ -15,7 +15,7 @@ use crate::schedule::part::Rect;
 ///
 /// In debug builds the plan is checked from scratch, see [`Plan::self_check`].
 pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocation: Allocation, name: &str, extent: [u32; 2]) -> Plan {
-    let Bound { expanded, mut shaders, steps, formats, mut views, mut draw_lists, mut requirements } = bound;
+    let Bound { expanded, mut shaders, steps, formats, mut views, mut draw_lists, mut inputs, mut requirements } = bound;
     let mut bound_steps: Vec<Option<Step>> = steps.into_iter().map(Some).collect();
     let mut steps: Vec<Step> = schedule.order.iter().filter_map(|pass| bound_steps.get_mut(pass.index()).and_then(Option::take)).collect();
     let mut place_of: Vec<Option<usize>> = vec![None; bound_steps.len()];
@@ -27,7 +27,7 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
             step.clears.push((part, value));
         }
     }
-    keep_used(&mut steps, &mut shaders, &mut views, &mut draw_lists);
+    keep_used(&mut steps, &mut shaders, &mut views, &mut draw_lists, &mut inputs);
     // A requirement names its pass; loops give every pass a name of its own.
     let culled: std::collections::BTreeSet<&str> = schedule.culled.iter().map(|culled| culled.name.as_str()).collect();
     requirements.retain(|requirement| !culled.contains(requirement.pass.as_str()));
@@ -67,6 +67,8 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
             placement: allocation.placements[index],
             retained,
             alone: allocation.alone[index],
+            clear: resource.clear,
+            history: resource.history,
         });
     }
     let plan = Plan {
@@ -79,6 +81,8 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
         shaders,
         steps,
         culled: schedule.culled,
+        inputs,
+        spreads: expanded.spreads,
         views,
         draw_lists,
         outputs,
@@ -90,8 +94,8 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
 }
 
 /// Drops what no step names, and renumbers.
-fn keep_used<A, B, C>(steps: &mut [Step], shaders: &mut Vec<A>, views: &mut Vec<B>, lists: &mut Vec<C>) {
-    let mut kept = [Kept::new(shaders.len()), Kept::new(views.len()), Kept::new(lists.len())];
+fn keep_used<A, B, C, D>(steps: &mut [Step], shaders: &mut Vec<A>, views: &mut Vec<B>, lists: &mut Vec<C>, inputs: &mut Vec<D>) {
+    let mut kept = [Kept::new(shaders.len()), Kept::new(views.len()), Kept::new(lists.len()), Kept::new(inputs.len())];
     for step in steps.iter_mut() {
         each_index(step, &mut |what, index| kept[what as usize].mark(*index));
     }
@@ -104,6 +108,7 @@ fn keep_used<A, B, C>(steps: &mut [Step], shaders: &mut Vec<A>, views: &mut Vec<
     kept[What::Shader as usize].keep(shaders);
     kept[What::View as usize].keep(views);
     kept[What::DrawList as usize].keep(lists);
+    kept[What::Input as usize].keep(inputs);
 }
 
 #[derive(Clone, Copy)]
@@ -111,12 +116,18 @@ enum What {
     Shader,
     View,
     DrawList,
+    Input,
 }
 
 /// Every index of a step into the plan's lists.
 fn each_index(step: &mut Step, visit: &mut impl FnMut(What, &mut usize)) {
     if let Some(shader) = &mut step.shader {
         visit(What::Shader, shader);
+    }
+    for input in step.inputs.iter_mut().chain(step.batch.iter_mut().flat_map(|iteration| &mut iteration.inputs)) {
+        let mut index = input.index();
+        visit(What::Input, &mut index);
+        *input = InputId(index as u32);
     }
     if let StepKind::Draw { list, view, .. } = &mut step.kind {
         visit(What::DrawList, list);

@@ -18,6 +18,17 @@ pub struct PublishedSchema {
     pub vertex: VertexSchema,
     /// What `has` and `scene.NAME` may ask for: the names of counts.
     pub counts: Vec<String>,
+    /// What loops may run over: storage tables whose rows are things of their own, by the name of their count.
+    pub collections: IndexMap<String, Collection>,
+}
+
+/// Things of which a scene has several.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Collection {
+    /// Their storage table, a row each, in stable slots.
+    pub table: String,
+    /// The shader variable that gets the row of the loop's element, as a uniform.
+    pub element: String,
 }
 
 /// A uniform or storage table.
@@ -32,6 +43,8 @@ pub struct TableSchema {
     pub members: Vec<TableMember>,
     /// Bytes of the struct or of one element.
     pub stride: u32,
+    /// A Draw depends on those rows alone that its draw list shows.
+    pub per_draw: bool,
 }
 
 /// How a table binds.
@@ -103,7 +116,7 @@ impl VertexFormat {
 pub type SceneCounts = IndexMap<String, u32>;
 
 /// A view that a plan draws from, in the order of [`crate::plan::Plan::views`].
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct ViewRequest {
     /// From where.
     pub kind: ViewKind,

@@ -5,7 +5,7 @@
 
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::execute::Backend;
-use luminaire_graph::plan::{MemoryId, Plan, Step, StepKind};
+use luminaire_graph::plan::{MemoryId, Plan, Step, StepKind, Workgroups};
 
 use crate::clear::ClearStep;
 use crate::compute::ComputeStep;
@@ -164,8 +164,13 @@ fn prepare_step(store: &mut Store, plan: &Plan, step: &Step, subject: &Subject) 
     let kind = match &step.kind {
         StepKind::Draw { .. } => Prepared::Draw(Box::new(DrawStep::prepare(store, plan, step)?)),
         StepKind::Fullscreen { fragment, targets } => Prepared::Fullscreen(FullscreenStep::prepare(store, plan, step, fragment, targets)?),
-        StepKind::Compute { entry, groups } => Prepared::Compute(ComputeStep::prepare(store, plan, step, entry, *groups)?),
+        StepKind::Compute { entry, groups: Workgroups::Fixed(groups) } => {
+            Prepared::Compute(ComputeStep::prepare(store, plan, step, entry, *groups)?)
+        }
         StepKind::Copy { source, target } => Prepared::Copy(CopyStep::prepare(store, plan, step, source, target)?),
+        StepKind::Compute { .. } | StepKind::Remember { .. } => {
+            return Err(subject.error("execute::kind", "this kind of work is not known"));
+        }
         StepKind::Clear { target, value } => Prepared::Clear(ClearStep::prepare(store, plan, subject, target, *value)?),
     };
     Ok(PreparedStep { clears, kind })

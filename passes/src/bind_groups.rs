@@ -158,7 +158,8 @@ impl BindGroups {
         match &binding.target {
             BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => scene.table(name).map(Held::whole),
             BindingTarget::View(index) => scene.view(*index).map(Held::whole),
-            BindingTarget::Params(bytes) => Some(Held::whole(&params_buffer(gpu, bytes))),
+            BindingTarget::TableRow(..) | BindingTarget::Batch => None,
+            BindingTarget::Params { bytes, .. } => Some(Held::whole(&params_buffer(gpu, bytes))),
             BindingTarget::Sampler(sampler) => {
                 let made = self.samplers.entry(*sampler).or_insert_with(|| samplers::builtin(&gpu.device, *sampler));
                 Some(Held::Sampler(made.clone()))

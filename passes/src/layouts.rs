@@ -64,8 +64,10 @@ fn entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
     let buffer = |ty| wgpu::BindingType::Buffer { ty, has_dynamic_offset: false, min_binding_size: None };
     let storage = |writable: bool| wgpu::BufferBindingType::Storage { read_only: !writable };
     let ty = match &binding.target {
-        BindingTarget::UniformTable(_) | BindingTarget::View(_) | BindingTarget::Params(_) => buffer(wgpu::BufferBindingType::Uniform),
-        BindingTarget::StorageTable(_) => buffer(storage(false)),
+        BindingTarget::UniformTable(_) | BindingTarget::TableRow(..) | BindingTarget::View(_) | BindingTarget::Params { .. } => {
+            buffer(wgpu::BufferBindingType::Uniform)
+        }
+        BindingTarget::StorageTable(_) | BindingTarget::Batch => buffer(storage(false)),
         BindingTarget::Buffer { uniform: true, .. } => buffer(wgpu::BufferBindingType::Uniform),
         BindingTarget::Buffer { writable, .. } => buffer(storage(*writable)),
         BindingTarget::MaterialTexture(_) => wgpu::BindingType::Texture {

@@ -20,7 +20,7 @@ use crate::device::DeviceFacts;
 use crate::diagnostic::Diagnostic;
 use crate::expand::types::{Dimension, PassId, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
-use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Usage};
+use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, StepKind, Usage};
 use crate::schedule::Schedule;
 use extent::{format_of, resource_bytes};
 use model::Model;
@@ -139,6 +139,10 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
             if used.access == crate::plan::Access::Clear {
                 add(used.resource, clear_usage(bound, used.resource));
             }
+        }
+        // Its first value.
+        if let StepKind::Remember { target, .. } = &step.kind {
+            add(target.resource, clear(target));
         }
         for (part, _) in &step.clears {
             add(part.resource, clear(part));

@@ -104,6 +104,7 @@ pub(crate) enum Tracked {
     StorageWrite,
     CopySource,
     CopyTarget,
+    Indirect,
     Texture,
 }
 
@@ -116,6 +117,7 @@ impl Tracked {
             Access::StorageWrite | Access::StorageReadWrite => Tracked::StorageWrite,
             Access::CopySource => Tracked::CopySource,
             Access::CopyTarget | Access::Clear => Tracked::CopyTarget,
+            Access::Indirect => Tracked::Indirect,
             Access::Sampled | Access::ColorAttachment | Access::DepthAttachment | Access::DepthReadOnly => Tracked::Texture,
         }
     }

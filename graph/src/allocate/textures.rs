@@ -97,9 +97,10 @@ pub(crate) fn assign(model: &Model, ranges: &[Range<usize>], usages: &[Usage]) -
     slots
 }
 
-const ALL: Usage = Usage { sampled: true, storage: true, uniform: true, attachment: true, copy_source: true, copy_target: true };
+const ALL: Usage =
+    Usage { sampled: true, storage: true, uniform: true, attachment: true, copy_source: true, copy_target: true, indirect: true };
 
 fn count(usage: Usage) -> u32 {
-    let Usage { sampled, storage, uniform, attachment, copy_source, copy_target } = usage;
-    [sampled, storage, uniform, attachment, copy_source, copy_target].into_iter().map(u32::from).sum()
+    let Usage { sampled, storage, uniform, attachment, copy_source, copy_target, indirect } = usage;
+    [sampled, storage, uniform, attachment, copy_source, copy_target, indirect].into_iter().map(u32::from).sum()
 }

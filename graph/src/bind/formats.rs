@@ -68,7 +68,7 @@ fn can(format: Format, taker: &Taker, device: &DeviceFacts) -> Result<(), String
                 Err(format!("{format}: a depth target needs a depth format, such as depth32float"))
             }
         }
-        Taker::Transfer => Ok(()),
+        Taker::Transfer | Taker::Indirect => Ok(()),
     }
 }
 
@@ -82,11 +82,15 @@ pub(super) fn choose(
     let mut uses: Vec<Vec<(usize, &Taken)>> = vec![Vec::new(); expanded.resources.len()];
     for (pass, slots) in taken.iter().enumerate() {
         for slot in slots {
-            uses[slot.part.resource.index()].push((pass, slot));
+            // A history has the format of its resource.
+            let resource = &expanded.resources[slot.part.resource.index()];
+            let id = resource.history.map_or(slot.part.resource, |history| history.of);
+            uses[id.index()].push((pass, slot));
         }
     }
     let mut chosen = Vec::new();
-    for (resource, uses) in expanded.resources.iter().zip(&uses) {
+    for (index, resource) in expanded.resources.iter().enumerate() {
+        let uses = &uses[resource.history.map_or(index, |history| history.of.index())];
         let Shape::Texture(shape) = &resource.shape else {
             chosen.push(None);
             continue;
@@ -104,7 +108,7 @@ pub(super) fn choose(
             }
             true
         });
-        if format.is_none() {
+        if format.is_none() && resource.history.is_none() {
             problems.push(BindError::NoFormat { resource: resource.name.clone(), reasons, span: shape.format_span, first });
         }
         // A format that can't do it still lets the rest be checked.

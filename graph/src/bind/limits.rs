@@ -19,14 +19,15 @@ pub(super) fn check(pass: &Pass, bindings: &[Binding], device: &DeviceFacts, pro
         ("samplers", device.max_samplers, |target| matches!(target, BindingTarget::Sampler(_) | BindingTarget::MaterialSampler(_))),
         ("storage textures", device.max_storage_textures, |target| matches!(target, BindingTarget::StorageTexture { .. })),
         ("storage buffers", device.max_storage_buffers, |target| {
-            matches!(target, BindingTarget::StorageTable(_) | BindingTarget::Buffer { uniform: false, .. })
+            matches!(target, BindingTarget::StorageTable(_) | BindingTarget::Batch | BindingTarget::Buffer { uniform: false, .. })
         }),
         ("uniform buffers", device.max_uniform_buffers, |target| {
             matches!(
                 target,
                 BindingTarget::UniformTable(_)
                     | BindingTarget::View(_)
-                    | BindingTarget::Params(_)
+                    | BindingTarget::TableRow(..)
+                    | BindingTarget::Params { .. }
                     | BindingTarget::Buffer { uniform: true, .. }
             )
         }),

@@ -78,7 +78,7 @@ pub fn bind(expanded: Expanded, input: &BindInput<'_>, sources: &mut SourceMap) 
             steps.extend(builder.step(index, pass, program, &taken[index]));
         }
     }
-    let steps::Builder { views, draw_lists, requirements, .. } = builder;
+    let steps::Builder { views, draw_lists, inputs, requirements, .. } = builder;
     // One slip in a loop or in a shared shader shows once, however many passes meet it.
     let mut seen = HashSet::new();
     diagnostics.extend(problems.into_iter().map(Diagnostic::from).filter(|problem| {
@@ -89,7 +89,16 @@ pub fn bind(expanded: Expanded, input: &BindInput<'_>, sources: &mut SourceMap) 
     if has_errors(&diagnostics) {
         return Err(diagnostics);
     }
-    Ok(Bound { expanded, shaders, steps, formats, views: views.into_vec(), draw_lists: draw_lists.into_vec(), requirements })
+    Ok(Bound {
+        expanded,
+        shaders,
+        steps,
+        formats,
+        views: views.into_vec(),
+        draw_lists: draw_lists.into_vec(),
+        inputs: inputs.into_vec(),
+        requirements,
+    })
 }
 
 type ProgramKey = (usize, Option<usize>, Option<usize>);

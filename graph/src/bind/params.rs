@@ -2,14 +2,25 @@
 
 use super::error::BindError;
 use crate::diagnostic::{did_you_mean, list_names};
-use crate::expand::types::{Param, Pass, Value};
+use crate::expand::types::{Param, Pass, Run, Value};
 use crate::expression::kind_of;
+use crate::plan::BindingTarget;
 use crate::reflect::interface::{EntryPoint, Layout, Member, Shader};
 
+/// The member of `params` that gets the number of the run, in an accumulating pass.
+const ACCUMULATED: &str = "accumulated";
+
 /// Packs parameters and loop indices into the layout of a `params` struct. Bytes between members are zero.
-pub(super) fn pack(pass: &Pass, params: &[Param], layout: &Layout, problems: &mut Vec<BindError>) -> Vec<u8> {
+pub(super) fn pack(pass: &Pass, params: &[Param], layout: &Layout, problems: &mut Vec<BindError>) -> BindingTarget {
     let mut bytes = vec![0; layout.size as usize];
-    for member in &layout.members {
+    let counted = |member: &&Member| matches!(pass.run, Run::Accumulate(_)) && member.name == ACCUMULATED;
+    let accumulated = layout.members.iter().find(counted);
+    if let Some(member) = accumulated.filter(|member| member.wgsl != "u32") {
+        let reason = format!("the member `{ACCUMULATED}` of `params` is {}, and it counts runs", member.wgsl);
+        let hint = Some("declare it as u32".to_owned());
+        problems.push(BindError::Param { pass: pass.name.clone(), reason, hint, span: member.span, pass_span: pass.span });
+    }
+    for member in layout.members.iter().filter(|member| !counted(member)) {
         match encode(pass, params, member) {
             Ok(encoded) => {
                 if let Some(target) = bytes.get_mut(member.offset as usize..member.offset as usize + encoded.len()) {
@@ -21,7 +32,13 @@ pub(super) fn pack(pass: &Pass, params: &[Param], layout: &Layout, problems: &mu
             }
         }
     }
-    bytes
+    BindingTarget::Params { bytes, accumulated: accumulated.map(|member| member.offset as usize) }
+}
+
+/// The parameters marked `live` that a `params` struct names.
+pub(super) fn live<'a>(params: &'a [Param], layout: &'a Layout) -> impl Iterator<Item = &'a str> {
+    let named = |param: &&Param| layout.members.iter().any(|member| member.name == param.name);
+    params.iter().filter(|param| param.live).filter(named).map(|param| param.name.as_str())
 }
 
 fn encode(pass: &Pass, params: &[Param], member: &Member) -> Result<Vec<u8>, (String, Option<String>)> {

@@ -2,7 +2,7 @@
 
 use super::error::{BindError, Mismatch};
 use super::program::Program;
-use crate::expand::types::{PartRef, Pass, PassKind, Slot};
+use crate::expand::types::{PartRef, Pass, PassKind, Slot, Work};
 use crate::plan::Role;
 use crate::reflect::interface::{ColorOutput, Global, GlobalKind, Shader, StorageAccess};
 
@@ -33,8 +33,10 @@ pub(super) enum Taker {
     },
     /// The depth attachment.
     Depth,
-    /// A Copy or Clear.
+    /// A Copy, Clear or Remember.
     Transfer,
+    /// The buffer that says how many workgroups run.
+    Indirect,
 }
 
 /// Finds a taker for every slot of a pass.
@@ -63,6 +65,9 @@ fn taker(pass: &Pass, program: &Program, shaders: &[Shader], role: Role, slot: &
     };
     if name == "depth" && matches!(pass.kind, PassKind::Draw { .. }) {
         return Some(Taker::Depth);
+    }
+    if name == "indirect" && matches!(pass.kind, PassKind::Compute { work: Work::Indirect { .. }, .. }) {
+        return Some(Taker::Indirect);
     }
     let rasterises = matches!(pass.kind, PassKind::Draw { .. } | PassKind::Fullscreen { .. });
     let outputs = if rasterises { program.main(shaders).map_or(&[][..], |main| main.color_outputs.as_slice()) } else { &[] };

@@ -8,9 +8,9 @@ use super::program::Program;
 use super::slots::{Taken, Taker};
 use super::{BindInput, formats as format_choice, limits, params, tables, targets, views, work};
 use crate::device::Feature;
-use crate::expand::types::{ClearValue, Expanded, Pass, PassId, PassKind, Shape, Work};
+use crate::expand::types::{BatchIteration, ClearValue, Expanded, PartRef, Pass, PassId, PassKind, Run, Shape, Work};
 use crate::format::Format;
-use crate::plan::{Access, Binding, BindingTarget, PartView, Requirement, Role, Step, StepKind, Use};
+use crate::plan::{Access, Binding, BindingTarget, Input, InputId, PartView, Requirement, Role, Step, StepIteration, StepKind, Use};
 use crate::published::{DrawFilter, ViewKind, ViewRequest};
 use crate::reflect::interface::{GlobalKind, Shader, StorageAccess};
 
@@ -20,18 +20,19 @@ pub(super) struct Interner<T> {
     indices: HashMap<T, usize>,
 }
 
-impl<T: Copy + Eq + Hash> Interner<T> {
+impl<T: Clone + Eq + Hash> Interner<T> {
     fn new() -> Interner<T> {
         Interner { values: Vec::new(), indices: HashMap::new() }
     }
 
     fn index(&mut self, value: T) -> usize {
         let next = self.values.len();
-        let index = *self.indices.entry(value).or_insert(next);
-        if index == next {
-            self.values.push(value);
+        if let Some(index) = self.indices.get(&value) {
+            return *index;
         }
-        index
+        self.indices.insert(value.clone(), next);
+        self.values.push(value);
+        next
     }
 
     pub(super) fn into_vec(self) -> Vec<T> {
@@ -48,6 +49,7 @@ pub(super) struct Builder<'a> {
     problems: &'a mut Vec<BindError>,
     pub views: Interner<ViewRequest>,
     pub draw_lists: Interner<(DrawFilter, ViewKind)>,
+    pub inputs: Interner<Input>,
     pub requirements: Vec<Requirement>,
 }
 
@@ -67,6 +69,7 @@ impl<'a> Builder<'a> {
             problems,
             views: Interner::new(),
             draw_lists: Interner::new(),
+            inputs: Interner::new(),
             requirements: Vec::new(),
         }
     }
@@ -75,6 +78,7 @@ impl<'a> Builder<'a> {
     pub(super) fn step(&mut self, index: usize, pass: &Pass, program: Option<&Program>, taken: &[Taken]) -> Option<Step> {
         let id = PassId(index as u32);
         let (kind, view) = match program {
+            None if matches!(pass.kind, PassKind::Remember) => return self.remember(id, pass),
             None => (self.transfer(pass, taken)?, None),
             Some(program) => self.kind(pass, program, taken)?,
         };
@@ -100,7 +104,12 @@ impl<'a> Builder<'a> {
             }
         }
         let clears = self.clears(pass, taken);
-        let uses = taken.iter().map(|slot| self.touch(pass, slot)).collect();
+        let uses: Vec<Use> = taken.iter().map(|slot| self.touch(pass, slot)).collect();
+        let inputs = self.step_inputs(pass, program, &kind, &bindings);
+        let batch = pass
+            .batch
+            .as_ref()
+            .map_or_else(Vec::new, |batch| batch.iterations.iter().map(|iteration| self.iteration(pass, &uses, iteration)).collect());
         Some(Step {
             pass: id,
             name: pass.name.clone(),
@@ -111,7 +120,94 @@ impl<'a> Builder<'a> {
             constants,
             clears,
             uses,
+            run: pass.run,
+            batch,
+            inputs,
         })
+    }
+
+    /// A generated pass: what its history's resource held at the end of the last frame.
+    fn remember(&self, id: PassId, pass: &Pass) -> Option<Step> {
+        let target = pass.writes.first()?.part;
+        let history = self.expanded.resources[target.resource.index()].history?;
+        let source = PartRef { resource: history.of, ..target };
+        let view = |part: &PartRef| views::whole(&self.expanded.resources[part.resource.index()], part);
+        let used = |part: &PartRef, role, access, slot: &str| {
+            let PartView { mips, layers, .. } = view(part);
+            Use { resource: part.resource, mips, layers, role, access, version: None, slot: slot.to_owned(), span: pass.span }
+        };
+        Some(Step {
+            pass: id,
+            name: pass.name.clone(),
+            span: pass.span,
+            shader: None,
+            kind: StepKind::Remember { source: view(&source), target: view(&target), first: history.first, on_resize: history.on_resize },
+            bindings: Vec::new(),
+            constants: Vec::new(),
+            clears: Vec::new(),
+            uses: vec![used(&source, Role::Recall, Access::CopySource, "read"), used(&target, Role::Produce, Access::CopyTarget, "write")],
+            run: Run::OnChange,
+            batch: Vec::new(),
+            inputs: Vec::new(),
+        })
+    }
+
+    /// What a step takes from outside. Rows of a Draw and of a batched pass come with what it draws and with its iterations.
+    fn step_inputs(&mut self, pass: &Pass, program: Option<&Program>, kind: &StepKind, bindings: &[Binding]) -> Vec<InputId> {
+        let mut found = Vec::new();
+        let draws = matches!(kind, StepKind::Draw { .. });
+        if let PassKind::Draw { objects, view, .. } = &pass.kind {
+            found.push(Input::Draws(*objects, *view));
+        }
+        let batched = |table: &str| {
+            let mut elements = pass.batch.iter().flat_map(|batch| &batch.iterations).filter_map(|iteration| iteration.element.as_ref());
+            elements.any(|element| element.table == table)
+        };
+        for binding in bindings {
+            match &binding.target {
+                BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => {
+                    let per_draw = self.input.published.tables.get(name).is_some_and(|table| table.per_draw);
+                    if !(draws && per_draw) && !batched(name) {
+                        found.push(Input::Table(name.clone()));
+                    }
+                }
+                BindingTarget::TableRow(table, row) => found.push(Input::Row(table.clone(), *row)),
+                BindingTarget::View(view) => found.extend(self.views.values.get(*view).copied().map(Input::View)),
+                BindingTarget::Params { .. } => {
+                    let globals = program.into_iter().flat_map(|program| &program.globals);
+                    let layout = globals.filter(|(global, _)| global.name == binding.variable).find_map(|(global, _)| match &global.kind {
+                        GlobalKind::Uniform { layout } => Some(layout),
+                        _ => None,
+                    });
+                    let live = layout.into_iter().flat_map(|layout| params::live(&self.expanded.params, layout));
+                    found.extend(live.map(|name| Input::Param(name.to_owned())));
+                }
+                _ => {}
+            }
+        }
+        self.intern(found)
+    }
+
+    fn intern(&mut self, found: Vec<Input>) -> Vec<InputId> {
+        let mut ids: Vec<InputId> = found.into_iter().map(|input| InputId(self.inputs.index(input) as u32)).collect();
+        ids.sort_unstable();
+        ids.dedup();
+        ids
+    }
+
+    fn iteration(&mut self, pass: &Pass, uses: &[Use], iteration: &BatchIteration) -> StepIteration {
+        let slots = pass.reads.iter().chain(&pass.writes).chain(&pass.modifies);
+        let parts = uses.iter().map(|used| {
+            let place = slots.clone().position(|slot| slot.name.value == used.slot);
+            let part = place.and_then(|place| iteration.parts.get(place));
+            part.map_or((used.mips.clone(), used.layers.clone()), |part| {
+                let view = views::whole(&self.expanded.resources[part.resource.index()], part);
+                (view.mips, view.layers)
+            })
+        });
+        let parts = parts.collect();
+        let element = iteration.element.iter().map(|element| Input::Row(element.table.clone(), element.row)).collect();
+        StepIteration { parts, inputs: self.intern(element) }
     }
 
     fn require(&mut self, feature: Feature, pass: &Pass, why: String) {
@@ -159,7 +255,7 @@ impl<'a> Builder<'a> {
                     work::groups(pass, work, &self.shaders[program.shader], main, self.expanded, self.input.device, self.problems)?;
                 Some((StepKind::Compute { entry: main.name.clone(), groups }, None))
             }
-            PassKind::Copy | PassKind::Clear { .. } => None,
+            PassKind::Copy | PassKind::Clear { .. } | PassKind::Remember => None,
         }
     }
 
@@ -190,7 +286,7 @@ impl<'a> Builder<'a> {
             let target = if let Some(slot) = slot {
                 views::bind(pass, slot, global, self.expanded, self.formats)
             } else if let (true, GlobalKind::Uniform { layout }) = (global.name == "params", &global.kind) {
-                Ok(BindingTarget::Params(params::pack(pass, &self.expanded.params, layout, self.problems)))
+                Ok(params::pack(pass, &self.expanded.params, layout, self.problems))
             } else {
                 let views = &mut self.views;
                 match tables::bind(pass, global, self.input.published, &mut || views.index(request)) {
@@ -232,7 +328,7 @@ impl<'a> Builder<'a> {
     fn clears(&self, pass: &Pass, taken: &[Taken]) -> Vec<(PartView, ClearValue)> {
         let covered = match &pass.kind {
             PassKind::Compute { work: Work::Cover(part), .. } => match &self.expanded.resources[part.resource.index()].shape {
-                Shape::Texture(shape) => Some(views::extent(shape, part.mip.unwrap_or(0))),
+                Shape::Texture(shape) => Some(views::extent(shape, part.mips.map_or(0, |mips| mips.first))),
                 Shape::Buffer { .. } => None,
             },
             _ => None,
@@ -264,6 +360,7 @@ impl<'a> Builder<'a> {
             Taker::Transfer if slot.name == "read" => Access::CopySource,
             Taker::Transfer if matches!(pass.kind, PassKind::Clear { .. }) => Access::Clear,
             Taker::Transfer => Access::CopyTarget,
+            Taker::Indirect => Access::Indirect,
             Taker::Variable(global) => match (&global.kind, slot.role) {
                 (GlobalKind::Uniform { .. }, _) => Access::Uniform,
                 (GlobalKind::Storage { .. }, Role::Read) => Access::StorageRead,

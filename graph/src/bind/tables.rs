@@ -55,6 +55,25 @@ pub(super) fn bind(
             (true, _) => mismatch(Mismatch::Kind, "is a sampler of the material", Some(format!("declare `var {name}: sampler;`"))),
         });
     }
+    if name == BATCH && pass.batch.is_some() {
+        return Some(match &global.kind {
+            GlobalKind::Storage { layout, writable: false, .. } if layout.runtime_array && layout.size == 4 => Ok(BindingTarget::Batch),
+            _ => mismatch(Mismatch::Kind, "holds the indices of the iterations that are due", Some(BATCH_HINT.to_owned())),
+        });
+    }
+    if let Some(element) = pass.elements.iter().rev().find(|element| element.variable == name) {
+        let table = published.tables.get(&element.table)?;
+        return Some(match &global.kind {
+            GlobalKind::Uniform { layout } => match check_members(layout, table) {
+                Ok(()) if layout.size <= table.stride.next_multiple_of(16) => {
+                    Ok(BindingTarget::TableRow(element.table.clone(), element.row))
+                }
+                Ok(()) => mismatch(Mismatch::Layout, &format!("is {} bytes large, and a row has {}", layout.size, table.stride), None),
+                Err((reason, hint)) => mismatch(Mismatch::Layout, &reason, hint),
+            },
+            _ => mismatch(Mismatch::Kind, "is the element of a loop", Some(format!("declare `var<uniform> {name}: ..;`"))),
+        });
+    }
     let table = published.tables.get(name)?;
     let (layout, target) = match (&global.kind, table.kind) {
         (GlobalKind::Uniform { layout }, TableKind::Uniform) => (layout, BindingTarget::UniformTable(name.to_owned())),
@@ -74,8 +93,12 @@ pub(super) fn bind(
     })
 }
 
-/// A shader may declare leading members only; those that it declares must lie where they are published.
-fn check_layout(layout: &Layout, table: &TableSchema) -> Result<(), (String, Option<String>)> {
+/// The variable that holds the indices of the iterations of a batch that are due.
+const BATCH: &str = "batch";
+const BATCH_HINT: &str = "declare `var<storage, read> batch: array<u32>;`";
+
+/// The members that a shader declares must lie where they are published.
+fn check_members(layout: &Layout, table: &TableSchema) -> Result<(), (String, Option<String>)> {
     for member in &layout.members {
         let Some(known) = table.members.iter().find(|known| known.name == member.name) else {
             let names = || table.members.iter().map(|member| member.name.as_str());
@@ -90,6 +113,12 @@ fn check_layout(layout: &Layout, table: &TableSchema) -> Result<(), (String, Opt
             return Err((reason, Some("declare the members in the published order".to_owned())));
         }
     }
+    Ok(())
+}
+
+/// A shader may declare leading members only, of a table that is no array.
+fn check_layout(layout: &Layout, table: &TableSchema) -> Result<(), (String, Option<String>)> {
+    check_members(layout, table)?;
     let is_array = table.kind == TableKind::Storage;
     if is_array && (!layout.runtime_array || layout.size != table.stride) {
         let reason = format!("has elements of {} bytes, and they are published with {}", layout.size, table.stride);

@@ -98,7 +98,7 @@ pub(super) fn targets(
                 }
                 let blend = blends.iter().find(|(name, _)| name.value == slot.name).map(|(_, blend)| *blend);
                 let load = match slot.role {
-                    Role::Modify | Role::Read => Load::Keep,
+                    Role::Modify | Role::Read | Role::Recall => Load::Keep,
                     Role::Produce if covers && blend.is_none() => Load::Clear(ClearValue::Zero),
                     Role::Produce => Load::Clear(declared.unwrap_or(ClearValue::Zero)),
                 };
@@ -110,7 +110,7 @@ pub(super) fn targets(
                 let PassKind::Draw { depth: Some(test), .. } = &pass.kind else { continue };
                 let Some((view, format)) = builder.attachment(slot, expanded, formats) else { continue };
                 let load = match (slot.role, declared) {
-                    (Role::Modify | Role::Read, _) => Load::Keep,
+                    (Role::Modify | Role::Read | Role::Recall, _) => Load::Keep,
                     (Role::Produce, Some(value)) => Load::Clear(value),
                     (Role::Produce, None) => {
                         let name = &expanded.resources[slot.part.resource.index()].name;

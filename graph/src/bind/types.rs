@@ -2,7 +2,7 @@
 
 use crate::expand::types::{Expanded, ResourceId};
 use crate::format::Format;
-use crate::plan::{Requirement, Step, Usage};
+use crate::plan::{Input, Requirement, Step, Usage};
 use crate::published::{DrawFilter, ViewKind, ViewRequest};
 use crate::reflect::interface::Shader;
 
@@ -21,6 +21,8 @@ pub struct Bound {
     pub views: Vec<ViewRequest>,
     /// Draw lists that the steps name by index.
     pub draw_lists: Vec<(DrawFilter, ViewKind)>,
+    /// Outside inputs that the steps name by index.
+    pub inputs: Vec<Input>,
     /// Features that steps need, in the order of the steps.
     pub requirements: Vec<Requirement>,
 }

@@ -2,7 +2,7 @@
 
 use super::error::{BindError, Mismatch};
 use super::slots::Taken;
-use crate::expand::types::{Dimension, Expanded, PartRef, Pass, Resource, Shape, TextureShape};
+use crate::expand::types::{Dimension, Expanded, Indices, PartRef, Pass, Resource, Shape, TextureShape};
 use crate::format::{Format, SampleKind};
 use crate::plan::{BindingTarget, PartView, SampleType};
 use crate::reflect::interface::{Global, GlobalKind, ScalarKind, ViewDimension};
@@ -15,8 +15,8 @@ pub(super) fn whole(resource: &Resource, part: &PartRef) -> PartView {
     };
     PartView {
         resource: part.resource,
-        mips: part.mip.map_or(0..mips, |mip| mip..mip + 1),
-        layers: part.layer.map_or(0..layers, |layer| layer..layer + 1),
+        mips: part.mips.map_or(0..mips, Indices::range),
+        layers: part.layers.map_or(0..layers, Indices::range),
         dimension: ViewDimension::D2,
     }
 }

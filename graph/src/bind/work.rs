@@ -7,6 +7,7 @@ use crate::device::DeviceFacts;
 use crate::diagnostic::{did_you_mean, list_names};
 use crate::expand::types::{ClearValue, Expanded, Pass, Shape, Work};
 use crate::format::Format;
+use crate::plan::Workgroups;
 use crate::published::PublishedSchema;
 use crate::reflect::interface::{EntryPoint, Shader};
 use crate::validate::clear_fits;
@@ -45,11 +46,12 @@ pub(super) fn groups(
     expanded: &Expanded,
     device: &DeviceFacts,
     problems: &mut Vec<BindError>,
-) -> Option<[u32; 3]> {
+) -> Option<Workgroups> {
     let given = |name: &str| pass.constants.iter().find(|(constant, _)| constant.value == name).map(|(_, value)| *value);
     let size = shader.workgroup_size(&main.name, &given).unwrap_or(main.workgroup_size).map(|axis| axis.max(1));
     let mut bad = |reason: String, hint: &str, span| {
-        problems.push(BindError::Work { pass: pass.name.clone(), reason, hint: Some(hint.to_owned()), span });
+        let hint = (!hint.is_empty()).then(|| hint.to_owned());
+        problems.push(BindError::Work { pass: pass.name.clone(), reason, hint, span });
     };
     let invocations: u64 = size.iter().map(|axis| u64::from(*axis)).product();
     let too_wide = (0..3).any(|axis| size[axis] > device.max_workgroup_size[axis]);
@@ -69,6 +71,23 @@ pub(super) fn groups(
         return None;
     }
     let (groups, span) = match work {
+        Work::Indirect { buffer, offset } => {
+            let resource = &expanded.resources[buffer.resource.index()];
+            return match &resource.shape {
+                Shape::Buffer { bytes } if offset.saturating_add(12) <= *bytes => {
+                    Some(Workgroups::Indirect { buffer: buffer.resource, offset: *offset })
+                }
+                Shape::Buffer { bytes } => {
+                    let reason = format!("three u32 at byte {offset} of `{}` end behind its {bytes} bytes", resource.name);
+                    bad(reason, "make the buffer larger", buffer.span);
+                    None
+                }
+                Shape::Texture(_) => {
+                    bad(format!("`{}` is a texture, and a buffer says how much work there is", resource.name), "", buffer.span);
+                    None
+                }
+            };
+        }
         Work::Groups(groups) => (*groups, pass.span),
         Work::Count(count) => ([count.div_ceil(size[0]), 1, 1], pass.span),
         Work::Cover(part) => {
@@ -99,7 +118,12 @@ pub(super) fn groups(
         );
         return None;
     }
-    Some(groups)
+    if pass.batch.is_some() && groups[2] != 1 {
+        let reason = format!("each iteration of a batch is one workgroup deep, and this one has {}", groups[2]);
+        bad(reason, "z counts the iterations that are due: let x and y hold the work of one", span);
+        return None;
+    }
+    Some(Workgroups::Fixed(groups))
 }
 
 /// A copy's source and target have one shape.

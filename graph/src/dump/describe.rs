@@ -95,6 +95,7 @@ pub(super) fn role(role: Role) -> &'static str {
         Role::Read => "reads",
         Role::Produce => "writes",
         Role::Modify => "modifies",
+        Role::Recall => "recalls",
     }
 }
 
@@ -112,12 +113,13 @@ pub(super) fn access(access: Access) -> &'static str {
         Access::CopySource => "copied from",
         Access::CopyTarget => "copied to",
         Access::Clear => "cleared",
+        Access::Indirect => "says how much work",
     }
 }
 
 /// The usages that are set.
 pub(super) fn usages(usage: Usage) -> Vec<&'static str> {
-    let Usage { sampled, storage, uniform, attachment, copy_source, copy_target } = usage;
+    let Usage { sampled, storage, uniform, attachment, copy_source, copy_target, indirect } = usage;
     let all = [
         (sampled, "sampled"),
         (storage, "storage"),
@@ -125,6 +127,7 @@ pub(super) fn usages(usage: Usage) -> Vec<&'static str> {
         (attachment, "attachment"),
         (copy_source, "copy source"),
         (copy_target, "copy target"),
+        (indirect, "indirect"),
     ];
     all.into_iter().filter(|(set, _)| *set).map(|(_, word)| word).collect()
 }

@@ -55,6 +55,7 @@ pub fn dot(plan: &Plan) -> String {
         let label = if part.is_empty() { String::new() } else { format!(" [label={}]", quoted(&part)) };
         out += &match role {
             Role::Read => format!("  r{resource} -> p{pass}{label};\n"),
+            Role::Recall => format!("  r{resource} -> p{pass} [style=dotted];\n"),
             Role::Produce => format!("  p{pass} -> r{resource}{label};\n"),
             Role::Modify if part.is_empty() => format!("  p{pass} -> r{resource} [dir=both];\n"),
             Role::Modify => format!("  p{pass} -> r{resource} [dir=both, label={}];\n", quoted(&part)),

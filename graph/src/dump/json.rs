@@ -5,7 +5,7 @@ use serde_json::{Value as Json, json};
 
 use super::{describe, steps};
 use crate::expand::types::{ClearValue, ResourceId, Value};
-use crate::plan::{Alone, CullReason, Load, MemoryKind, PartView, Plan, PlannedShape, Step, StepKind, Targets, Use};
+use crate::plan::{Alone, CullReason, Load, MemoryKind, PartView, Plan, PlannedShape, Step, StepKind, Targets, Use, Workgroups};
 use crate::source::SourceMap;
 
 /// The plan as a value; print it with `{:#}` for people.
@@ -127,9 +127,16 @@ fn kind(plan: &Plan, kind: &StepKind) -> Json {
         StepKind::Fullscreen { fragment, targets: drawn } => {
             json!({ "name": "Fullscreen", "fragment": fragment, "targets": targets(plan, drawn) })
         }
-        StepKind::Compute { entry, groups } => json!({ "name": "Compute", "entry": entry, "groups": groups }),
+        StepKind::Compute { entry, groups: Workgroups::Fixed(groups) } => json!({ "name": "Compute", "entry": entry, "groups": groups }),
+        StepKind::Compute { entry, groups: Workgroups::Indirect { buffer, offset } } => json!({
+            "name": "Compute", "entry": entry, "indirect": describe::resource(plan, *buffer), "offset": offset,
+        }),
         StepKind::Copy { source, target } => json!({ "name": "Copy", "source": part(plan, source), "target": part(plan, target) }),
         StepKind::Clear { target, value } => json!({ "name": "Clear", "target": part(plan, target), "value": clear(*value) }),
+        StepKind::Remember { source, target, first, on_resize } => json!({
+            "name": "Remember", "source": part(plan, source), "target": part(plan, target), "first": clear(*first),
+            "on_resize": format!("{on_resize:?}"),
+        }),
     }
 }
 

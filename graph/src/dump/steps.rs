@@ -1,7 +1,7 @@
 //! One step of a plan as lines of text.
 
 use super::describe;
-use crate::plan::{Load, PartView, Plan, Step, StepKind, Targets};
+use crate::plan::{Load, PartView, Plan, Step, StepKind, Targets, Workgroups};
 use crate::source::SourceMap;
 
 /// All lines of a step, the first with its number and name.
@@ -31,7 +31,7 @@ pub(super) fn step(plan: &Plan, place: usize, step: &Step, sources: &SourceMap) 
         StepKind::Clear { target, value } => {
             lines.push(format!("sets      {} to {}", part_name(plan, target), describe::clear(*value)));
         }
-        StepKind::Compute { .. } | StepKind::Copy { .. } => {}
+        StepKind::Compute { .. } | StepKind::Copy { .. } | StepKind::Remember { .. } => {}
     }
     if !step.constants.is_empty() {
         let constants: Vec<String> = step.constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
@@ -57,9 +57,15 @@ pub(super) fn kind(plan: &Plan, step: &Step) -> String {
         StepKind::Fullscreen { fragment, targets } => {
             format!("Fullscreen over {} x {}, entry {fragment}", targets.extent[0], targets.extent[1])
         }
-        StepKind::Compute { entry, groups: [x, y, z] } => format!("Compute of {x} x {y} x {z} workgroups, entry {entry}"),
+        StepKind::Compute { entry, groups: Workgroups::Fixed([x, y, z]) } => {
+            format!("Compute of {x} x {y} x {z} workgroups, entry {entry}")
+        }
+        StepKind::Compute { entry, groups: Workgroups::Indirect { buffer, offset } } => {
+            format!("Compute of workgroups by `{}` at byte {offset}, entry {entry}", describe::resource(plan, *buffer))
+        }
         StepKind::Copy { source, target } => format!("Copy of {} to {}", part_name(plan, source), part_name(plan, target)),
         StepKind::Clear { target, .. } => format!("Clear of {}", part_name(plan, target)),
+        StepKind::Remember { source, .. } => format!("Remember {} of the frame before", part_name(plan, source)),
     }
 }
 

@@ -6,7 +6,7 @@ use std::convert::Infallible;
 
 use super::Backend;
 use crate::expand::types::{ClearValue, ResourceId};
-use crate::plan::{Memory, MemoryId, MemoryKind, PartView, Plan, StepKind};
+use crate::plan::{Memory, MemoryId, MemoryKind, PartView, Plan, StepKind, Workgroups};
 
 /// What a plan made a backend do.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -47,7 +47,9 @@ impl Backend for Recorder {
         let what = match &step.kind {
             StepKind::Draw { .. } => "draw".to_owned(),
             StepKind::Fullscreen { .. } => "fullscreen".to_owned(),
-            StepKind::Compute { groups: [x, y, z], .. } => format!("compute {x}x{y}x{z}"),
+            StepKind::Compute { groups: Workgroups::Fixed([x, y, z]), .. } => format!("compute {x}x{y}x{z}"),
+            StepKind::Compute { groups: Workgroups::Indirect { buffer, .. }, .. } => format!("compute by {}", name(plan, *buffer)),
+            StepKind::Remember { source, target, .. } => format!("remember {} in {}", part(plan, source), part(plan, target)),
             StepKind::Copy { source, target } => format!("copy {} to {}", part(plan, source), part(plan, target)),
             StepKind::Clear { target, value } => format!("clear {} to {}", part(plan, target), value_text(value)),
         };
@@ -124,6 +126,9 @@ mod tests {
             constants: Vec::new(),
             clears: Vec::new(),
             uses: Vec::new(),
+            run: Default::default(),
+            batch: Vec::new(),
+            inputs: Vec::new(),
         }
     }
 
@@ -139,6 +144,8 @@ mod tests {
             placement: Some(Placement { memory: MemoryId(0), offset }),
             retained: None,
             alone: None,
+            clear: None,
+            history: None,
         };
         let holders = vec![ResourceId(0), ResourceId(1)];
         let mut copy = step("copy", StepKind::Copy { source: view(0), target: view(1) });
@@ -153,6 +160,8 @@ mod tests {
             shaders: Vec::new(),
             steps: vec![step("reset", StepKind::Clear { target: view(0), value: ClearValue::Zero }), copy],
             culled: Vec::new(),
+            inputs: Vec::new(),
+            spreads: Vec::new(),
             views: Vec::new(),
             draw_lists: Vec::new(),
             outputs: Vec::new(),

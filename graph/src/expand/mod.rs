@@ -68,9 +68,8 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     if has_errors(&problems) {
         Err(problems)
     } else {
-        {
-            let offered = validated.outputs.iter().map(|(_, part)| part.resource).collect();
-            Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, outputs, offered })
-        }
+        let offered = validated.outputs.iter().map(|(_, part)| part.resource).collect();
+        let (spreads, retained_budget) = (Vec::new(), None);
+        Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, spreads, retained_budget, outputs, offered })
     }
 }

@@ -6,7 +6,7 @@ use std::collections::HashMap;
 
 use super::environment::Environment;
 use super::error::ExpandError;
-use super::types::{Located, PartRef, Pass, PassId, PassKind, Resource, Shape, Slot, Value, Work};
+use super::types::{Indices, Located, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Value, Work};
 use crate::published::ViewKind;
 use crate::validate::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
 use crate::validate::without_indices;
@@ -124,6 +124,9 @@ impl Unroller<'_, '_> {
             writes,
             modifies,
             after: Vec::new(),
+            run: Run::OnChange,
+            batch: None,
+            elements: Vec::new(),
         });
     }
 
@@ -277,5 +280,6 @@ pub(super) fn reference(environment: &mut Environment<'_>, resources: &[Resource
     };
     let mip = index(&part.mip, "mip", mips);
     let layer = index(&part.layer, "layer", layers);
-    Some(PartRef { resource: part.resource, mip: mip?, layer: layer?, version: None, span: part.span })
+    let (mips, layers) = (mip?.map(Indices::one), layer?.map(Indices::one));
+    Some(PartRef { resource: part.resource, mips, layers, version: None, span: part.span })
 }

@@ -39,6 +39,10 @@ pub struct Expanded {
     pub resources: Vec<Resource>,
     /// Passes in the order of the file, loops unrolled in place.
     pub passes: Vec<Pass>,
+    /// Loops that [`Run::Spread`] names by index.
+    pub spreads: Vec<Spread>,
+    /// Bytes that retained resources may take where the author leaves the choice to the compiler.
+    pub retained_budget: Option<u64>,
     /// The outputs asked for.
     pub outputs: Vec<Output>,
     /// Resources that outputs name, whether asked for or not.
@@ -56,6 +60,8 @@ pub struct Param {
     pub value: Value,
     /// The allowed words, if `value` is a word.
     pub options: Vec<String>,
+    /// It is expected to change while frames are rendered: what it reaches should be able to run alone.
+    pub live: bool,
 }
 
 /// The value of a parameter or an expression.
@@ -82,6 +88,43 @@ pub struct Resource {
     pub shape: Shape,
     /// The declared value.
     pub clear: Option<ClearValue>,
+    /// Whose past it is, if it is one: in frame n it holds what that resource held at the end of frame n - 1.
+    pub history: Option<History>,
+    /// What the author says of keeping its content.
+    pub keep: Keep,
+}
+
+/// A resource that holds the past of another.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct History {
+    /// Whose past.
+    pub of: ResourceId,
+    /// The value where that resource did not stand in the frame before.
+    pub first: ClearValue,
+    /// What happens where it had another extent in the frame before.
+    pub on_resize: OnResize,
+}
+
+/// What a history holds after its resource changed its extent.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum OnResize {
+    /// Its first value.
+    #[default]
+    First,
+    /// The texels or bytes that both extents have; elsewhere its first value.
+    Crop,
+}
+
+/// Whether content that could be made again is kept from frame to frame.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Keep {
+    /// The compiler decides.
+    #[default]
+    Auto,
+    /// Kept.
+    Always,
+    /// Made again when it is needed.
+    Never,
 }
 
 /// What a resource is.
@@ -162,6 +205,74 @@ pub struct Pass {
     pub modifies: Vec<Slot>,
     /// Passes that must come first.
     pub after: Vec<PassId>,
+    /// When it runs.
+    pub run: Run,
+    /// Its iterations, if it stands for all of a batched loop. The slots then name the smallest parts that hold those of all
+    /// iterations.
+    pub batch: Option<Batch>,
+    /// Elements of the loops around, outermost first.
+    pub elements: Vec<Element>,
+}
+
+/// When a pass runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub enum Run {
+    /// When something that it reads has changed.
+    #[default]
+    OnChange,
+    /// In every frame.
+    EveryFrame,
+    /// Once a frame, so many times after a change. The shader sees the number of the run as `params.accumulated`.
+    Accumulate(u32),
+    /// With its iteration of a loop of which only some iterations run in a frame.
+    Spread {
+        /// Index into [`Expanded::spreads`].
+        spread: u32,
+        /// The loop's index. A batched pass takes it from its iterations.
+        iteration: u32,
+    },
+}
+
+/// A loop of which only some iterations run in a frame.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct Spread {
+    /// The loop.
+    pub name: String,
+    /// Where it is named.
+    pub span: Span,
+    /// At most so many iterations a frame.
+    pub per_frame: u32,
+    /// How often each runs after a change.
+    pub rounds: u32,
+}
+
+/// The iterations of a batched loop. Those that are due run as one pass, whose shader finds their indices in `batch`.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Batch {
+    /// The name of the index.
+    pub variable: String,
+    /// By index, from 0.
+    pub iterations: Vec<BatchIteration>,
+}
+
+/// An iteration of a batched loop.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BatchIteration {
+    /// What each slot names in this iteration, in the order reads, writes, modifies.
+    pub parts: Vec<PartRef>,
+    /// Its element.
+    pub element: Option<Element>,
+}
+
+/// The row of a published table that a loop stands at.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Element {
+    /// The shader variable that gets the row.
+    pub variable: String,
+    /// The published table.
+    pub table: String,
+    /// The row.
+    pub row: u32,
 }
 
 /// A value with its place.
@@ -198,6 +309,8 @@ pub enum PassKind {
     Clear {
         value: Option<ClearValue>,
     },
+    /// Brings the past of a resource up to the frame before. Generated; its one write is the history.
+    Remember,
 }
 
 impl PassKind {
@@ -209,6 +322,7 @@ impl PassKind {
             PassKind::Compute { .. } => "Compute",
             PassKind::Copy => "Copy",
             PassKind::Clear { .. } => "Clear",
+            PassKind::Remember => "Remember",
         }
     }
 }
@@ -222,6 +336,13 @@ pub enum Work {
     Count(u32),
     /// So many workgroups.
     Groups([u32; 3]),
+    /// Three `u32` of a buffer say how many workgroups.
+    Indirect {
+        /// The buffer; it is among the reads, too, in a slot `indirect`.
+        buffer: PartRef,
+        /// Bytes from its start, a multiple of 4.
+        offset: u64,
+    },
 }
 
 /// A shader variable or output, and the part it gets.
@@ -233,15 +354,42 @@ pub struct Slot {
     pub part: PartRef,
 }
 
+/// Mip levels or layers that follow each other.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Indices {
+    /// The first.
+    pub first: u32,
+    /// How many, at least 1.
+    pub count: u32,
+}
+
+impl Indices {
+    /// A single one.
+    pub fn one(index: u32) -> Indices {
+        Indices { first: index, count: 1 }
+    }
+
+    /// As a range.
+    pub fn range(self) -> std::ops::Range<u32> {
+        self.first..self.first.saturating_add(self.count)
+    }
+
+    /// The smallest run that holds both.
+    pub fn join(self, other: Indices) -> Indices {
+        let first = self.first.min(other.first);
+        Indices { first, count: self.range().end.max(other.range().end) - first }
+    }
+}
+
 /// A part of a resource.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct PartRef {
     /// Whose part.
     pub resource: ResourceId,
-    /// One mip level, or all.
-    pub mip: Option<u32>,
-    /// One layer or face, or all.
-    pub layer: Option<u32>,
+    /// Some mip levels, or all.
+    pub mips: Option<Indices>,
+    /// Some layers or faces, or all.
+    pub layers: Option<Indices>,
     /// The value as this pass left it, instead of the final one.
     pub version: Option<PassId>,
     /// Where the reference is written.

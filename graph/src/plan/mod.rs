@@ -5,14 +5,14 @@
 mod step;
 
 pub use step::{
-    Access, Binding, BindingTarget, BuiltinSampler, ColorTarget, Cull, DepthTarget, Load, PartView, Role, SampleType, Stages, Step,
-    StepKind, Targets, Use,
+    Access, Binding, BindingTarget, BuiltinSampler, ColorTarget, Cull, DepthTarget, Input, InputId, Load, PartView, Role, SampleType,
+    Stages, Step, StepIteration, StepKind, Targets, Use, Workgroups,
 };
 
 use std::ops::Range;
 
 use crate::device::Feature;
-use crate::expand::types::{Param, PassId, ResourceId, TextureShape};
+use crate::expand::types::{ClearValue, History, Param, PassId, ResourceId, Spread, TextureShape};
 use crate::format::Format;
 use crate::published::{DrawFilter, ViewKind, ViewRequest};
 use crate::reflect::interface::Shader;
@@ -39,6 +39,10 @@ pub struct Plan {
     pub steps: Vec<Step>,
     /// What does not run, in the order of the file.
     pub culled: Vec<Culled>,
+    /// What steps take from outside.
+    pub inputs: Vec<Input>,
+    /// Loops of which only some iterations run in a frame.
+    pub spreads: Vec<Spread>,
     /// Views that the scene must publish.
     pub views: Vec<ViewRequest>,
     /// Draw lists that the scene must publish.
@@ -83,6 +87,10 @@ pub struct PlannedResource {
     pub retained: Option<Retained>,
     /// Why no other resource has its bytes at another time, if so.
     pub alone: Option<Alone>,
+    /// The value of parts that nothing made.
+    pub clear: Option<ClearValue>,
+    /// Whose past it is, if it is one.
+    pub history: Option<History>,
 }
 
 /// What a resource is.
@@ -175,6 +183,8 @@ pub struct Usage {
     pub copy_source: bool,
     /// Copied to, or cleared by a copy.
     pub copy_target: bool,
+    /// Says how much another pass works.
+    pub indirect: bool,
 }
 
 impl Usage {
@@ -187,6 +197,7 @@ impl Usage {
             attachment: self.attachment | other.attachment,
             copy_source: self.copy_source | other.copy_source,
             copy_target: self.copy_target | other.copy_target,
+            indirect: self.indirect | other.indirect,
         }
     }
 }

@@ -3,8 +3,9 @@
 use std::ops::Range;
 
 use super::Usage;
-use crate::expand::types::{ClearValue, PassId, ResourceId};
+use crate::expand::types::{ClearValue, OnResize, PassId, ResourceId, Run};
 use crate::format::Format;
+use crate::published::{DrawFilter, ViewKind, ViewRequest};
 use crate::reflect::interface::{StorageAccess, ViewDimension};
 use crate::source::Span;
 use crate::syntax::document::{BlendDoc, CompareDoc};
@@ -30,6 +31,48 @@ pub struct Step {
     pub clears: Vec<(PartView, ClearValue)>,
     /// Every part that it touches, in the order reads, writes, modifies.
     pub uses: Vec<Use>,
+    /// When it runs.
+    pub run: Run,
+    /// Its iterations, if it stands for all of a batched loop.
+    pub batch: Vec<StepIteration>,
+    /// What it takes from outside of the graph, by index into [`super::Plan::inputs`], rising. What depends on the iteration stands
+    /// there.
+    pub inputs: Vec<InputId>,
+}
+
+/// An iteration of a batched step.
+#[derive(Debug, Clone, PartialEq, Eq)]
+pub struct StepIteration {
+    /// Mip levels and layers of each of the step's uses in this iteration.
+    pub parts: Vec<(Range<u32>, Range<u32>)>,
+    /// What this iteration alone takes from outside.
+    pub inputs: Vec<InputId>,
+}
+
+/// An input of [`super::Plan::inputs`].
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct InputId(pub u32);
+
+impl InputId {
+    /// For indexing.
+    pub fn index(self) -> usize {
+        self.0 as usize
+    }
+}
+
+/// Something outside of the graph that has a revision.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub enum Input {
+    /// A published table.
+    Table(String),
+    /// A row of a published table.
+    Row(String, u32),
+    /// The table of a view.
+    View(ViewRequest),
+    /// What a draw list shows: its batches, their geometry, transforms, materials and textures.
+    Draws(DrawFilter, ViewKind),
+    /// A parameter that is marked `live`.
+    Param(String),
 }
 
 /// What a step does.
@@ -54,8 +97,8 @@ pub enum StepKind {
     },
     Compute {
         entry: String,
-        /// Workgroups, each at least 1 and within the device's limit.
-        groups: [u32; 3],
+        /// How many workgroups.
+        groups: Workgroups,
     },
     Copy {
         source: PartView,
@@ -64,6 +107,28 @@ pub enum StepKind {
     Clear {
         target: PartView,
         value: ClearValue,
+    },
+    /// Copies what a resource held at the end of the frame before.
+    Remember {
+        source: PartView,
+        target: PartView,
+        first: ClearValue,
+        on_resize: OnResize,
+    },
+}
+
+/// How many workgroups a Compute runs.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Workgroups {
+    /// Each at least 1 and within the device's limit. Of a batched step for one iteration: then `z` is 1, and grows by one for each
+    /// iteration that is due.
+    Fixed([u32; 3]),
+    /// As three `u32` of a buffer say.
+    Indirect {
+        /// Which.
+        buffer: ResourceId,
+        /// Bytes from its start.
+        offset: u64,
     },
 }
 
@@ -176,8 +241,17 @@ pub enum BindingTarget {
     StorageTable(String),
     /// The view table of this view, by index into [`super::Plan::views`].
     View(usize),
+    /// A row of a published storage table, as a uniform.
+    TableRow(String, u32),
+    /// The indices of the iterations that are due, of a batched step.
+    Batch,
     /// The `params` struct, packed.
-    Params(Vec<u8>),
+    Params {
+        /// Its bytes.
+        bytes: Vec<u8>,
+        /// Where the number of the run goes, in an accumulating pass whose shader asks for it.
+        accumulated: Option<usize>,
+    },
     /// A texture of the material that is drawn, by index into the schema's list.
     MaterialTexture(usize),
     /// A sampler of the material that is drawn, by index into the schema's list.
@@ -302,6 +376,8 @@ pub enum Role {
     Produce,
     /// Changes the value.
     Modify,
+    /// Sees the value that the frame before left; before anything changes it.
+    Recall,
 }
 
 /// How a pass touches a part.
@@ -319,6 +395,7 @@ pub enum Access {
     CopySource,
     CopyTarget,
     Clear,
+    Indirect,
 }
 
 impl Access {
@@ -331,6 +408,7 @@ impl Access {
             Access::Uniform => usage.uniform = true,
             Access::ColorAttachment | Access::DepthAttachment | Access::DepthReadOnly => usage.attachment = true,
             Access::CopySource => usage.copy_source = true,
+            Access::Indirect => usage.indirect = true,
             // The executor clears through an attachment or through a copy, as the format allows.
             Access::CopyTarget | Access::Clear => usage.copy_target = true,
         }

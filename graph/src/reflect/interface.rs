@@ -14,6 +14,8 @@ pub struct Shader {
     /// The module, valid, with a group and binding on every global resource and a location on every vertex input and
     /// fragment output.
     pub module: Arc<naga::Module>,
+    /// The text that it was made from, imports included: equal texts are equal shaders.
+    pub text: Arc<str>,
     /// Entry points in the order of the file.
     pub entries: Vec<EntryPoint>,
     /// Pipeline-overridable constants in the order of the file.

@@ -92,5 +92,5 @@ fn reflect_steps(
     if !errors.is_empty() {
         return Err(errors);
     }
-    Ok(Shader { path: path.to_owned(), module: Arc::new(module), entries, overrides, features })
+    Ok(Shader { path: path.to_owned(), module: Arc::new(module), text: joined.as_str().into(), entries, overrides, features })
 }

@@ -18,14 +18,26 @@ pub(crate) fn alive(dag: &Dag, grids: &[Grid]) -> Vec<bool> {
     let mut alive = vec![false; dag.node_count()];
     let roots = grids.iter().flat_map(|grid| &grid.regions).filter(|region| !region.outputs.is_empty());
     let mut open: Vec<NodeIndex> = roots.flat_map(|region| &region.writers).map(|pass| NodeIndex::new(pass.index())).collect();
+    // A pass that remembers the last frame needs whoever left the value then, without coming after it.
+    let mut recalled: Vec<(NodeIndex, NodeIndex)> = grids.iter().flat_map(recalled).collect();
+    recalled.sort_unstable();
     while let Some(node) = open.pop() {
         if std::mem::replace(&mut alive[node.index()], true) {
             continue;
         }
+        let first = recalled.partition_point(|(recaller, _)| *recaller < node);
+        open.extend(recalled[first..].iter().take_while(|(recaller, _)| *recaller == node).map(|(_, writer)| *writer));
         let values = dag.edges_directed(node, Direction::Incoming).filter(|edge| edge.weight().reason == Reason::Value);
         open.extend(values.map(|edge| edge.source()).filter(|source| !alive[source.index()]));
     }
     alive
+}
+
+/// Passes that remember a resource, each with every writer of it.
+fn recalled(grid: &Grid) -> impl Iterator<Item = (NodeIndex, NodeIndex)> {
+    let node = |pass: PassId| NodeIndex::new(pass.index());
+    let writers = || grid.cells.iter().flat_map(|cell| &cell.writers).map(|writer| writer.pass);
+    grid.recallers.iter().flat_map(move |recaller| writers().map(move |writer| (node(recaller.pass), node(writer))))
 }
 
 /// The passes that do not run, in the order of the file, each with what would have used its results.

@@ -1,7 +1,8 @@
 //! What must run before what.
 //!
 //! Edges go from a producer along its modifiers, from the last of them to every reader of the final value, from a reader of an
-//! earlier version to the modifier that destroys it, and from each pass named under `after`. Where many passes write what many
+//! earlier version to the modifier that destroys it, from a pass that remembers the last frame to every writer of what it
+//! remembers, and from each pass named under `after`. Where many passes write what many
 //! read, a join stands between them, so that edges stay linear in uses.
 
 use petgraph::graph::{DiGraph, NodeIndex};
@@ -53,6 +54,13 @@ pub(crate) fn dag(bound: &Bound, grids: &[Grid]) -> Dag {
             for pair in cell.writers.windows(2) {
                 let dependency = Dependency { reason: Reason::Value, resource, span: pair[1].get(bound).span };
                 edges.add(pair[0].pass.index(), pair[1].pass.index(), dependency);
+            }
+        }
+        // The past is remembered before anything touches it.
+        for recaller in &grid.recallers {
+            let span = recaller.get(bound).span;
+            for writer in grid.cells.iter().flat_map(|cell| &cell.writers) {
+                edges.add(recaller.pass.index(), writer.pass.index(), Dependency { reason: Reason::Destroys, resource, span });
             }
         }
         for region in &grid.regions {

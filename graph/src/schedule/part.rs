@@ -5,7 +5,7 @@
 use std::fmt::Write;
 use std::ops::Range;
 
-use crate::expand::types::{Dimension, PartRef, Resource, Shape, TextureShape};
+use crate::expand::types::{Dimension, Indices, PartRef, Resource, Shape, TextureShape};
 use crate::plan::PartView;
 use crate::reflect::interface::ViewDimension;
 
@@ -36,8 +36,8 @@ impl Rect {
     /// The part that a reference names.
     pub(crate) fn of_reference(part: &PartRef, shape: &Shape) -> Rect {
         let whole = Rect::whole(shape);
-        let one = |index: Option<u32>, all: (u32, u32)| index.map_or(all, |index| (index, index.saturating_add(1)));
-        Rect { mips: one(part.mip, whole.mips), layers: one(part.layer, whole.layers) }
+        let some = |indices: Option<Indices>, all: (u32, u32)| indices.map_or(all, |some| (some.range().start, some.range().end));
+        Rect { mips: some(part.mips, whole.mips), layers: some(part.layers, whole.layers) }
     }
 
     /// What both have; `None` if they share nothing.

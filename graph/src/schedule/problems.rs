@@ -213,7 +213,9 @@ fn unread(bound: &Bound, grid: &Grid, resource: &Resource, found: &mut Vec<Diagn
     let Some(writer) = grid.cells.iter().find_map(|cell| cell.writers.first()) else { return };
     let mut writers = grid.cells.iter().flat_map(|cell| &cell.writers);
     // A depth buffer that is only tested against does its work without a reader.
-    if !grid.regions.is_empty() || writers.all(|writer| matches!(writer.get(bound).access, Access::DepthAttachment | Access::DepthReadOnly))
+    if !grid.regions.is_empty()
+        || !grid.recallers.is_empty()
+        || writers.all(|writer| matches!(writer.get(bound).access, Access::DepthAttachment | Access::DepthReadOnly))
     {
         return;
     }

@@ -70,6 +70,8 @@ pub(crate) struct Grid {
     layer_cuts: Vec<u32>,
     pub(crate) cells: Vec<Cell>,
     pub(crate) regions: Vec<Region>,
+    /// Uses that see what the last frame left; they name all of the resource.
+    pub(crate) recallers: Vec<UseRef>,
     /// Two producers of a part.
     pub(crate) rivals: Vec<(UseRef, UseRef, Rect)>,
     /// Two writes of one pass to a part.
@@ -233,7 +235,10 @@ fn grid(bound: &Bound, resource: ResourceId, uses: &[UseRef], outputs: &[usize])
             regions.len() - 1
         })
     };
-    for used in uses.iter().filter(|used| !writes(used.get(bound).role)) {
+    for used in uses.iter().filter(|used| used.get(bound).role == Role::Recall) {
+        grid.recallers.push(*used);
+    }
+    for used in uses.iter().filter(|used| used.get(bound).role == Role::Read) {
         let index = region_of(&mut regions, rect_of(used), used.get(bound).version);
         regions[index].readers.push(*used);
     }

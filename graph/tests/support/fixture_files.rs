@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use luminaire_graph::compile::{Compilation, CompileInput, compile};
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::published::{
-    PublishedSchema, SceneCounts, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
+    Collection, PublishedSchema, SceneCounts, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
 };
 use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile};
 
@@ -47,10 +47,19 @@ pub fn schema() -> PublishedSchema {
         doc: "The camera.".to_owned(),
         members: vec![TableMember { name: "projection_from_world".to_owned(), wgsl: "mat4x4<f32>".to_owned(), offset: 0 }],
         stride: 64,
+        per_draw: false,
     };
     let attribute = |format, offset| VertexAttribute { format, offset };
+    let member = |name: &str, wgsl: &str, offset| TableMember { name: name.to_owned(), wgsl: wgsl.to_owned(), offset };
+    let lights = TableSchema {
+        kind: TableKind::Storage,
+        doc: "Point lights.".to_owned(),
+        members: vec![member("position", "vec3<f32>", 0), member("range", "f32", 12)],
+        stride: 16,
+        per_draw: false,
+    };
     PublishedSchema {
-        tables: [("camera".to_owned(), camera)].into_iter().collect(),
+        tables: [("camera".to_owned(), camera), ("point_lights".to_owned(), lights)].into_iter().collect(),
         material_textures: vec!["base_color_texture".to_owned()],
         material_samplers: vec!["base_color_sampler".to_owned()],
         vertex: VertexSchema {
@@ -64,6 +73,9 @@ pub fn schema() -> PublishedSchema {
             .collect(),
         },
         counts: vec!["point_lights".to_owned(), "directional_lights".to_owned()],
+        collections: [("point_lights".to_owned(), Collection { table: "point_lights".to_owned(), element: "point_light".to_owned() })]
+            .into_iter()
+            .collect(),
     }
 }
 

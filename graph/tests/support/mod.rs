@@ -18,7 +18,7 @@ use luminaire_graph::diagnostic::{Diagnostic, render};
 use luminaire_graph::expand::types::*;
 use luminaire_graph::format::Format;
 use luminaire_graph::lifetime::{Lifetimes, lifetimes};
-use luminaire_graph::plan::{Access, Plan, Role, Step, StepKind, Use};
+use luminaire_graph::plan::{Access, Plan, Role, Step, StepKind, Use, Workgroups};
 use luminaire_graph::schedule::{Schedule, schedule};
 use luminaire_graph::source::{FileId, SourceMap, Span};
 
@@ -88,9 +88,26 @@ pub fn fixture(text: &str) -> Fixture {
             Shape::Buffer { .. } => None,
         })
         .collect();
-    let expanded = Expanded { doc: "A test.".to_owned(), params: Vec::new(), resources, passes, outputs, offered: Vec::new() };
-    let bound =
-        Bound { expanded, shaders: Vec::new(), steps, formats, views: Vec::new(), draw_lists: Vec::new(), requirements: Vec::new() };
+    let expanded = Expanded {
+        doc: "A test.".to_owned(),
+        params: Vec::new(),
+        resources,
+        passes,
+        spreads: Vec::new(),
+        retained_budget: None,
+        outputs,
+        offered: Vec::new(),
+    };
+    let bound = Bound {
+        expanded,
+        shaders: Vec::new(),
+        steps,
+        formats,
+        views: Vec::new(),
+        draw_lists: Vec::new(),
+        inputs: Vec::new(),
+        requirements: Vec::new(),
+    };
     Fixture { bound, sources }
 }
 
@@ -128,7 +145,7 @@ fn resource(words: &[Word<'_>]) -> Resource {
         }
         Shape::Texture(shape)
     };
-    Resource { name: words[1].text.to_owned(), span: words[1].span(), shape, clear }
+    Resource { name: words[1].text.to_owned(), span: words[1].span(), shape, clear, history: None, keep: Keep::Auto }
 }
 
 struct Names<'a> {
@@ -146,13 +163,13 @@ impl Names<'_> {
         let mut pieces = part.split('.');
         let name = pieces.next().expect("a part has a name");
         let resource = self.resources.iter().position(|known| known.name == name).unwrap_or_else(|| panic!("no resource `{name}`"));
-        let mut found = PartRef { resource: ResourceId(resource as u32), mip: None, layer: None, version, span: word.span() };
+        let mut found = PartRef { resource: ResourceId(resource as u32), mips: None, layers: None, version, span: word.span() };
         for piece in pieces {
             let (what, index) = piece.trim_end_matches(')').split_once('(').expect("a piece is what(index)");
-            let index = Some(index.parse().expect("an index is a number"));
+            let index = Some(Indices::one(index.parse().expect("an index is a number")));
             match what {
-                "mip" => found.mip = index,
-                _ => found.layer = index,
+                "mip" => found.mips = index,
+                _ => found.layers = index,
             }
         }
         found
@@ -165,11 +182,11 @@ impl Names<'_> {
             Shape::Texture(shape) => (shape.mips, shape.layers),
             Shape::Buffer { .. } => (1, 1),
         };
-        let range = |index: Option<u32>, all| index.map_or(0..all, |index| index..index + 1);
+        let range = |some: Option<Indices>, all| some.map_or(0..all, Indices::range);
         Use {
             resource: part.resource,
-            mips: range(part.mip, mips),
-            layers: range(part.layer, layers),
+            mips: range(part.mips, mips),
+            layers: range(part.layers, layers),
             role,
             access,
             version: part.version,
@@ -219,17 +236,23 @@ impl Names<'_> {
             writes: Vec::new(),
             modifies: Vec::new(),
             after,
+            run: Run::OnChange,
+            batch: None,
+            elements: Vec::new(),
         };
         let step = Step {
             pass: PassId(index as u32),
             name,
             span,
             shader: None,
-            kind: StepKind::Compute { entry: "main".to_owned(), groups: [1, 1, 1] },
+            kind: StepKind::Compute { entry: "main".to_owned(), groups: Workgroups::Fixed([1, 1, 1]) },
             bindings: Vec::new(),
             constants: Vec::new(),
             clears: Vec::new(),
             uses,
+            run: Run::OnChange,
+            batch: Vec::new(),
+            inputs: Vec::new(),
         };
         (pass, step)
     }

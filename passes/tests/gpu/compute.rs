@@ -29,7 +29,7 @@ fn volume() -> Builder {
         shader,
         [2, 2, 2],
         vec![
-            ("params", BindingTarget::Params(params)),
+            ("params", BindingTarget::Params { bytes: params, accumulated: None }),
             ("voxels", BindingTarget::StorageTexture { view, format: format("rgba16float"), access: StorageAccess::Write }),
         ],
     );

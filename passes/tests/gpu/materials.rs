@@ -45,7 +45,7 @@ fn textured() -> Builder {
         wrap_u: PublishedWrap::Repeat,
         wrap_v: PublishedWrap::ClampToEdge,
     };
-    let table = |kind, stride| TableSchema { kind, doc: String::new(), members: Vec::new(), stride };
+    let table = |kind, stride| TableSchema { kind, doc: String::new(), members: Vec::new(), stride, per_draw: false };
     builder.schema.material_textures = vec!["material_color".to_owned()];
     builder.schema.material_samplers = vec!["material_sampler".to_owned()];
     builder.schema.tables.insert("instance_slots".to_owned(), table(TableKind::Storage, 4));

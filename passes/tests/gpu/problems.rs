@@ -48,7 +48,7 @@ fn broken() -> Builder {
         "wrong format",
         shader,
         vec![target(part(color, 0, 0), "rgba16float")],
-        vec![("tint", BindingTarget::Params(vec![0; 16]))],
+        vec![("tint", BindingTarget::Params { bytes: vec![0; 16], accumulated: None })],
     );
     builder
 }

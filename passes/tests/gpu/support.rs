@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use luminaire_graph::expand::types::{ClearValue, Dimension, PassId, ResourceId, TextureShape};
+use luminaire_graph::expand::types::{ClearValue, Dimension, PassId, ResourceId, Run, TextureShape};
 use luminaire_graph::format::Format;
 use luminaire_graph::plan::{
     Binding, BindingTarget, ColorTarget, Load, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Plan, PlannedOutput,
-    PlannedResource, PlannedShape, SampleType, Stages, Step, StepKind, Targets, Usage,
+    PlannedResource, PlannedShape, SampleType, Stages, Step, StepKind, Targets, Usage, Workgroups,
 };
 use luminaire_graph::published::{PublishedScene, PublishedSchema};
 use luminaire_graph::reflect::interface::{Shader, ViewDimension};
@@ -57,6 +57,8 @@ impl Builder {
                 shaders: Vec::new(),
                 steps: Vec::new(),
                 culled: Vec::new(),
+                inputs: Vec::new(),
+                spreads: Vec::new(),
                 views: Vec::new(),
                 draw_lists: Vec::new(),
                 outputs: Vec::new(),
@@ -107,6 +109,8 @@ impl Builder {
             placement: Some(Placement { memory, offset }),
             retained: None,
             alone: None,
+            clear: None,
+            history: None,
         });
         let view = PartView { resource: id, mips: 0..1, layers: 0..layers, dimension: ViewDimension::D2 };
         self.plan.outputs.push(PlannedOutput { name: name.to_owned(), view });
@@ -128,6 +132,7 @@ impl Builder {
         self.plan.shaders.push(Shader {
             path: path.to_owned(),
             module: Arc::new(module),
+            text: wgsl.into(),
             entries: Vec::new(),
             overrides: Vec::new(),
             features: Vec::new(),
@@ -156,6 +161,9 @@ impl Builder {
             constants: Vec::new(),
             clears: Vec::new(),
             uses: Vec::new(),
+            run: Run::OnChange,
+            batch: Vec::new(),
+            inputs: Vec::new(),
         });
     }
 
@@ -168,7 +176,7 @@ impl Builder {
 
     /// A Compute with the entry point `main`.
     pub(crate) fn compute(&mut self, name: &str, shader: usize, groups: [u32; 3], bound: Vec<(&str, BindingTarget)>) {
-        let kind = StepKind::Compute { entry: "main".to_owned(), groups };
+        let kind = StepKind::Compute { entry: "main".to_owned(), groups: Workgroups::Fixed(groups) };
         self.step(name, Some(shader), kind, Stages { compute: true, ..Stages::default() }, bound);
     }
 
@@ -211,10 +219,10 @@ pub(crate) fn sampled(view: PartView) -> BindingTarget {
 }
 
 pub(crate) const ATTACHED: Usage =
-    Usage { sampled: false, storage: false, uniform: false, attachment: true, copy_source: false, copy_target: false };
+    Usage { sampled: false, storage: false, uniform: false, attachment: true, copy_source: false, copy_target: false, indirect: false };
 pub(crate) const SAMPLED: Usage = Usage { sampled: true, ..ATTACHED };
 pub(crate) const COPIED: Usage =
-    Usage { sampled: false, storage: false, uniform: false, attachment: false, copy_source: true, copy_target: true };
+    Usage { sampled: false, storage: false, uniform: false, attachment: false, copy_source: true, copy_target: true, indirect: false };
 
 /// Whether all components are within a step of 8 bits.
 #[track_caller]

@@ -3,7 +3,9 @@
 use std::mem::{offset_of, size_of};
 
 use indexmap::IndexMap;
-use luminaire_graph::published::{PublishedSchema, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema};
+use luminaire_graph::published::{
+    Collection, PublishedSchema, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
+};
 
 use super::layout::{CameraTable, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, TEXTURES, ViewTable};
 use crate::asset::Vertex;
@@ -22,6 +24,9 @@ pub const TEXTURE_NAMES: [&str; TEXTURES] = [
 /// Names of counts, in the order of [`super::counts`].
 pub const COUNT_NAMES: [&str; 7] = ["directional_lights", "point_lights", "spot_lights", "local_lights", "opaque", "masked", "blended"];
 
+/// Tables of which a Draw sees what it draws.
+const PER_DRAW: [&str; 3] = ["instances", "instance_slots", "materials"];
+
 /// Members with their offsets, which come from the struct itself.
 macro_rules! members {
     ($row:ty { $($name:ident: $wgsl:literal),* $(,)? }) => {
@@ -37,7 +42,8 @@ macro_rules! members {
 pub fn schema() -> PublishedSchema {
     let mut tables = IndexMap::new();
     let mut add = |name: &str, kind, doc: &str, stride: usize, members| {
-        tables.insert(name.to_owned(), TableSchema { kind, doc: doc.to_owned(), members, stride: stride as u32 });
+        let per_draw = PER_DRAW.contains(&name);
+        tables.insert(name.to_owned(), TableSchema { kind, doc: doc.to_owned(), members, stride: stride as u32, per_draw });
     };
     add(
         "camera",
@@ -151,6 +157,10 @@ pub fn schema() -> PublishedSchema {
         material_samplers: TEXTURE_NAMES.map(|name| name.replace("_texture", "_sampler")).to_vec(),
         vertex: vertex_schema(),
         counts: COUNT_NAMES.map(str::to_owned).to_vec(),
+        collections: [("directional_lights", "directional_light"), ("local_lights", "local_light")]
+            .map(|(table, element)| (table.to_owned(), Collection { table: table.to_owned(), element: element.to_owned() }))
+            .into_iter()
+            .collect(),
     }
 }
 
