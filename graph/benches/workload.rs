@@ -169,6 +169,7 @@ fn main() {
     for path in found {
         let json: Json = serde_json::from_str(&std::fs::read_to_string(&path).unwrap()).unwrap();
         let bound = bound(&json);
+        let retained = luminaire_graph::dirty::retention(&bound).retained;
         let mut spent = [0.0; 2];
         let mut figures = None;
         let mut runs = 0.0;
@@ -176,14 +177,14 @@ fn main() {
         while spent[0] + spent[1] < 0.3 {
             let start = cpu_seconds();
             for _ in 0..RUNS {
-                std::hint::black_box(schedule(&bound));
+                std::hint::black_box(schedule(&bound, &retained));
             }
             let middle = cpu_seconds();
-            let (schedule, problems) = schedule(&bound);
+            let (schedule, problems) = schedule(&bound, &retained);
             let schedule = schedule.unwrap_or_else(|| panic!("{:?}", &problems[..1]));
             let again = cpu_seconds();
             for _ in 0..RUNS {
-                let spans = lifetimes(&bound, &schedule);
+                let spans = lifetimes(&bound, &schedule, retained.clone());
                 let allocation = allocate(&bound, &schedule, &spans, &device).unwrap();
                 figures = Some((allocation.figures, schedule.order == schedule.declared));
             }

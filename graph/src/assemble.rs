@@ -7,14 +7,25 @@ use crate::allocate::Allocation;
 use crate::bind::types::Bound;
 use crate::expand::types::{PassId, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
-use crate::plan::{BindingTarget, InputId, MemoryKind, Plan, PlannedOutput, PlannedResource, PlannedShape, Step, StepKind};
+use crate::plan::{
+    BindingTarget, InputId, MemoryKind, PartView, Plan, PlannedOutput, PlannedResource, PlannedShape, Role, Step, StepKind, Use,
+};
 use crate::schedule::Schedule;
 use crate::schedule::part::Rect;
 
 /// Builds the plan. `extent` is the width and height of the rendered image.
 ///
 /// In debug builds the plan is checked from scratch, see [`Plan::self_check`].
-pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocation: Allocation, name: &str, extent: [u32; 2]) -> Plan {
+#[allow(clippy::too_many_arguments, reason = "each is the output of one step")]
+pub fn assemble(
+    bound: Bound,
+    schedule: Schedule,
+    lifetimes: Lifetimes,
+    allocation: Allocation,
+    mut retained_for: Vec<Vec<InputId>>,
+    name: &str,
+    extent: [u32; 2],
+) -> Plan {
     let Bound { expanded, mut shaders, steps, formats, mut views, mut draw_lists, mut inputs, mut requirements } = bound;
     let mut bound_steps: Vec<Option<Step>> = steps.into_iter().map(Some).collect();
     let mut steps: Vec<Step> = schedule.order.iter().filter_map(|pass| bound_steps.get_mut(pass.index()).and_then(Option::take)).collect();
@@ -24,10 +35,14 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
     }
     for (pass, part, value) in schedule.initial_clears {
         if let Some(step) = place_of[pass.index()].and_then(|place| steps.get_mut(place)) {
-            step.clears.push((part, value));
+            // Under a modifier it is set whenever the modifier runs. What only readers see is set when it is not held.
+            let modified = step.uses.iter().any(|used| used.role == Role::Modify && used.resource == part.resource && touches(used, &part));
+            if modified {
+                step.clears.push((part, value));
+            }
         }
     }
-    keep_used(&mut steps, &mut shaders, &mut views, &mut draw_lists, &mut inputs);
+    keep_used(&mut steps, &mut shaders, &mut views, &mut draw_lists, &mut inputs, &mut retained_for);
     // A requirement names its pass; loops give every pass a name of its own.
     let culled: std::collections::BTreeSet<&str> = schedule.culled.iter().map(|culled| culled.name.as_str()).collect();
     requirements.retain(|requirement| !culled.contains(requirement.pass.as_str()));
@@ -68,6 +83,7 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
             retained,
             alone: allocation.alone[index],
             clear: resource.clear,
+            retained_for: retained_for.get(index).cloned().unwrap_or_default(),
             history: resource.history,
         });
     }
@@ -93,8 +109,20 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
     plan
 }
 
+/// Whether a use and a part have something in common.
+fn touches(used: &Use, part: &PartView) -> bool {
+    Rect::new(&used.mips, &used.layers).intersection(&Rect::new(&part.mips, &part.layers)).is_some()
+}
+
 /// Drops what no step names, and renumbers.
-fn keep_used<A, B, C, D>(steps: &mut [Step], shaders: &mut Vec<A>, views: &mut Vec<B>, lists: &mut Vec<C>, inputs: &mut Vec<D>) {
+fn keep_used<A, B, C, D>(
+    steps: &mut [Step],
+    shaders: &mut Vec<A>,
+    views: &mut Vec<B>,
+    lists: &mut Vec<C>,
+    inputs: &mut Vec<D>,
+    retained_for: &mut [Vec<InputId>],
+) {
     let mut kept = [Kept::new(shaders.len()), Kept::new(views.len()), Kept::new(lists.len()), Kept::new(inputs.len())];
     for step in steps.iter_mut() {
         each_index(step, &mut |what, index| kept[what as usize].mark(*index));
@@ -104,6 +132,9 @@ fn keep_used<A, B, C, D>(steps: &mut [Step], shaders: &mut Vec<A>, views: &mut V
     }
     for step in steps {
         each_index(step, &mut |what, index| *index = kept[what as usize].renumbered(*index));
+    }
+    for input in retained_for.iter_mut().flatten() {
+        *input = InputId(kept[What::Input as usize].renumbered(input.index()) as u32);
     }
     kept[What::Shader as usize].keep(shaders);
     kept[What::View as usize].keep(views);

@@ -8,6 +8,7 @@ use crate::assemble::assemble;
 use crate::bind::{BindInput, bind};
 use crate::device::DeviceFacts;
 use crate::diagnostic::{Diagnostic, did_you_mean, has_errors};
+use crate::dirty::retention;
 use crate::expand::{ExpandInput, expand};
 use crate::lifetime::lifetimes;
 use crate::plan::Plan;
@@ -63,7 +64,7 @@ pub fn compile(input: &CompileInput<'_>) -> Compilation {
     Compilation { plan, diagnostics, sources }
 }
 
-/// syntax -> validate -> expand -> (reflect and) bind -> schedule -> lifetime -> allocate -> plan
+/// syntax -> validate -> expand -> (reflect and) bind -> retention -> schedule -> lifetime -> allocate -> plan
 fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<Diagnostic>) -> Result<Plan, Vec<Diagnostic>> {
     let loaded = input.files.read(FileKind::Pipeline, input.pipeline).map_err(|error| {
         let known = input.files.known(FileKind::Pipeline);
@@ -79,10 +80,11 @@ fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<D
     let expanded = expand(&validated, &expand_input)?;
     let bind_input = BindInput { files: input.files, published: input.published, device: input.device, output: input.output };
     let bound = bind(expanded, &bind_input, sources)?;
-    let (scheduled, problems) = schedule(&bound);
+    let retention = retention(&bound);
+    let (scheduled, problems) = schedule(&bound, &retention.retained);
     let Some(schedule) = scheduled.filter(|_| !has_errors(&problems)) else { return Err(problems) };
     warnings.extend(problems);
-    let lifetimes = lifetimes(&bound, &schedule);
+    let lifetimes = lifetimes(&bound, &schedule, retention.retained);
     let allocation = allocate(&bound, &schedule, &lifetimes, input.device)?;
-    Ok(assemble(bound, schedule, lifetimes, allocation, input.pipeline, input.output))
+    Ok(assemble(bound, schedule, lifetimes, allocation, retention.for_inputs, input.pipeline, input.output))
 }

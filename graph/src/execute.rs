@@ -6,7 +6,9 @@
 //! Accepted downside: a backend sees a whole [`Plan`] with every verb and could look ahead. In return the trait has a handful of verbs
 //! and no types of its own.
 
-use crate::plan::{MemoryId, Plan};
+use crate::dirty::{Frame, StepRun};
+use crate::expand::types::ClearValue;
+use crate::plan::{MemoryId, PartView, Plan};
 
 pub mod record;
 
@@ -15,20 +17,19 @@ pub trait Backend {
     /// Why a verb failed. The walker never looks into it.
     type Error;
 
-    /// Creates a memory. Called once per memory, in order of ids, before any step is prepared. The memory holds nothing that
-    /// the plan relies on.
+    /// Creates a memory. Called once per memory that is not taken over, in order of ids, before any step is prepared. The memory
+    /// holds nothing that the plan relies on.
     fn create_memory(&mut self, plan: &Plan, memory: MemoryId) -> Result<(), Self::Error>;
 
     /// Creates whatever a step needs to run. Called once per step, in order, when every memory stands.
     fn prepare_step(&mut self, plan: &Plan, step: usize) -> Result<(), Self::Error>;
 
-    /// Fills the part of `plan.steps[step].clears[clear]` with its value. Called right before its step runs; the step is
-    /// prepared.
-    fn clear_part(&mut self, plan: &Plan, step: usize, clear: usize) -> Result<(), Self::Error>;
+    /// Fills a part with a value: a declared value that is not held, or what a step starts from.
+    fn fill(&mut self, plan: &Plan, part: &PartView, value: ClearValue) -> Result<(), Self::Error>;
 
     /// Runs a step. It is prepared, its clears have been done, and all that it reads has been written by steps before it, in
-    /// this frame or (if retained) an earlier one.
-    fn run_step(&mut self, plan: &Plan, step: usize) -> Result<(), Self::Error>;
+    /// this frame or (if it is held) an earlier one.
+    fn run_step(&mut self, plan: &Plan, run: &StepRun) -> Result<(), Self::Error>;
 
     /// Hands the frame's work to the device. Called once after the last step; not called if no step ran or one failed.
     fn submit(&mut self, plan: &Plan) -> Result<(), Self::Error>;
@@ -37,37 +38,36 @@ pub trait Backend {
     fn abandon(&mut self);
 }
 
-/// Creates the memories and prepares the steps of a plan. Steps are prepared only if every memory stands; all errors of the
-/// memories, or else of the steps, come back at once.
-pub fn prepare<B: Backend>(plan: &Plan, backend: &mut B) -> Result<(), Vec<B::Error>> {
+/// Creates the memories and prepares the steps of a plan; `taken` tells, by memory, which ones stand already. Steps are prepared
+/// only if every memory stands; all errors of the memories, or else of the steps, come back at once.
+pub fn prepare<B: Backend>(plan: &Plan, taken: &[Option<MemoryId>], backend: &mut B) -> Result<(), Vec<B::Error>> {
     let memories = 0..u32::try_from(plan.memories.len()).unwrap_or(u32::MAX);
-    collect(memories.map(|memory| backend.create_memory(plan, MemoryId(memory))))?;
+    let missing = memories.filter(|memory| taken.get(*memory as usize).copied().flatten().is_none());
+    collect(missing.map(|memory| backend.create_memory(plan, MemoryId(memory))))?;
     collect((0..plan.steps.len()).map(|step| backend.prepare_step(plan, step)))
 }
 
-/// Runs every step of a prepared plan.
-pub fn execute<B: Backend>(plan: &Plan, backend: &mut B) -> Result<(), B::Error> {
-    execute_due(plan, 0..plan.steps.len(), backend)
+/// Runs a frame of a prepared plan. An empty one submits nothing.
+pub fn execute<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B) -> Result<(), B::Error> {
+    if frame.is_empty() {
+        return Ok(());
+    }
+    let ran = encode(plan, frame, backend);
+    if ran.is_err() {
+        backend.abandon();
+        return ran;
+    }
+    backend.submit(plan)
 }
 
-/// Runs some steps of a prepared plan: `due` holds indices of steps in rising order. Nothing due submits nothing.
-pub fn execute_due<B: Backend>(plan: &Plan, due: impl IntoIterator<Item = usize>, backend: &mut B) -> Result<(), B::Error> {
-    let mut ran = false;
-    for step in due {
-        ran = true;
-        if let Err(error) = run_one(plan, step, backend) {
-            backend.abandon();
-            return Err(error);
+fn encode<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B) -> Result<(), B::Error> {
+    for run in &frame.runs {
+        for (part, value) in run.fills.iter().chain(&run.clears) {
+            backend.fill(plan, part, *value)?;
         }
+        backend.run_step(plan, run)?;
     }
-    if ran { backend.submit(plan) } else { Ok(()) }
-}
-
-fn run_one<B: Backend>(plan: &Plan, step: usize, backend: &mut B) -> Result<(), B::Error> {
-    for clear in 0..plan.steps[step].clears.len() {
-        backend.clear_part(plan, step, clear)?;
-    }
-    backend.run_step(plan, step)
+    frame.last_fills.iter().try_for_each(|(part, value)| backend.fill(plan, part, *value))
 }
 
 fn collect<E>(results: impl Iterator<Item = Result<(), E>>) -> Result<(), Vec<E>> {

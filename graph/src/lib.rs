@@ -13,6 +13,7 @@ pub mod bind;
 pub mod compile;
 pub mod device;
 pub mod diagnostic;
+pub mod dirty;
 pub mod dump;
 pub mod execute;
 pub mod expand;

@@ -18,8 +18,8 @@ pub struct Lifetimes {
     pub retained: Vec<Option<Retained>>,
 }
 
-/// Lifetimes in the chosen order.
-pub fn lifetimes(bound: &Bound, schedule: &Schedule) -> Lifetimes {
+/// Lifetimes in the chosen order, for what [`crate::dirty::retention()`] says.
+pub fn lifetimes(bound: &Bound, schedule: &Schedule, retained: Vec<Option<Retained>>) -> Lifetimes {
     let mut ranges = Touches::new(bound).ranges(&schedule.order);
     // An output that nothing writes is cleared by a step that does not name it.
     let mut places = vec![None; bound.steps.len()];
@@ -28,22 +28,13 @@ pub fn lifetimes(bound: &Bound, schedule: &Schedule) -> Lifetimes {
     }
     for (pass, part, _) in &schedule.initial_clears {
         if let (Some(place), Some(range)) = (places[pass.index()], ranges.get_mut(part.resource.index())) {
-            *range = if Range::is_empty(range) { place..place + 1 } else { range.start.min(place)..range.end.max(place + 1) };
+            // Whoever touches it first fills what it needs; only what nobody touches needs a place of its own.
+            if Range::is_empty(range) {
+                *range = place..place + 1;
+            }
         }
     }
-    let retained = retained(bound).into_iter().map(|output| output.then_some(Retained::Output)).collect();
     Lifetimes { ranges, retained }
-}
-
-/// By resource, whether an asked-for output shows a part of it.
-pub(crate) fn retained(bound: &Bound) -> Vec<bool> {
-    let mut retained = vec![false; bound.expanded.resources.len()];
-    for output in &bound.expanded.outputs {
-        if let Some(entry) = retained.get_mut(output.part.resource.index()) {
-            *entry = true;
-        }
-    }
-    retained
 }
 
 /// For each pass the resources that it touches, each once. Flat, since every candidate order walks all of it.

@@ -238,11 +238,11 @@ proptest! {
 
         // The chosen order is never worse than the declared one.
         let declared = Schedule { order: schedule.declared.clone(), ..schedule.clone() };
-        let same = allocate(&fixture.bound, &declared, &lifetimes(&fixture.bound, &declared), &device()).unwrap();
+        let same = allocate(&fixture.bound, &declared, &lifetimes(&fixture.bound, &declared, spans.retained.clone()), &device()).unwrap();
         prop_assert!(figures.reached <= same.figures.reached);
         prop_assert_eq!(figures.declared_bound, same.figures.bound);
 
-        let plan = assemble(fixture.bound.clone(), schedule.clone(), spans, allocation, "test.graph", [64, 64]);
+        let plan = assemble(fixture.bound.clone(), schedule.clone(), spans, allocation, Vec::new(), "test.graph", [64, 64]);
         prop_assert_eq!(plan.self_check(), Vec::<String>::new());
         let alive: BTreeSet<usize> = schedule.order.iter().map(|pass| pass.index()).collect();
         prop_assert_eq!(&alive, &needed(&fixture.bound, &plan));

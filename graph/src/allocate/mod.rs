@@ -48,7 +48,7 @@ pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, devic
     for pass in &schedule.order {
         runs[pass.index()] = true;
     }
-    let model = Model::new(bound, |index| runs[index]);
+    let model = Model::new(bound, &lifetimes.retained, |index| runs[index]);
     let usages = usages(bound, schedule);
     let problems = limits::resources(bound, lifetimes, &usages, device);
     if !problems.is_empty() {

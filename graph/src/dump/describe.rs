@@ -179,7 +179,7 @@ pub(super) fn objects(filter: DrawFilter) -> &'static str {
 /// Why a resource has bytes of its own.
 pub(super) fn alone(plan: &Plan, alone: Alone) -> String {
     match alone {
-        Alone::Retained(Retained::Output) => "retained, since it is an output".to_owned(),
+        Alone::Retained(why) => format!("retained, since {}", retained(why)),
         Alone::OnlyOfItsDescriptor => "shares with nothing: no other texture has its format, extent, layers, mips and samples".to_owned(),
         Alone::InUseTogether { count, step } => {
             format!("shares with nothing: {count} textures of its kind are in use at once at step {step}")
@@ -193,10 +193,25 @@ pub(super) fn alone(plan: &Plan, alone: Alone) -> String {
     }
 }
 
+/// Why a resource keeps its content, as the end of a sentence.
+pub(super) fn retained(why: Retained) -> &'static str {
+    match why {
+        Retained::Output => "it is an output",
+        Retained::History => "it is remembered from frame to frame",
+        Retained::Amortised => "passes that run a few at a time make or read it",
+        Retained::Kept => "its author says `keep: Always`",
+        Retained::Read => "a reader can run without its maker",
+    }
+}
+
 /// Stable names of the reasons, for programs.
 pub(super) fn alone_name(alone: Alone) -> &'static str {
     match alone {
         Alone::Retained(Retained::Output) => "retained-output",
+        Alone::Retained(Retained::History) => "retained-history",
+        Alone::Retained(Retained::Amortised) => "retained-amortised",
+        Alone::Retained(Retained::Kept) => "retained-kept",
+        Alone::Retained(Retained::Read) => "retained-read",
         Alone::OnlyOfItsDescriptor => "only-of-its-descriptor",
         Alone::InUseTogether { .. } => "in-use-together",
         Alone::OnlyBuffer => "only-buffer",

@@ -5,6 +5,7 @@
 use std::convert::Infallible;
 
 use super::Backend;
+use crate::dirty::StepRun;
 use crate::expand::types::{ClearValue, ResourceId};
 use crate::plan::{Memory, MemoryId, MemoryKind, PartView, Plan, StepKind, Workgroups};
 
@@ -36,14 +37,13 @@ impl Backend for Recorder {
         Ok(())
     }
 
-    fn clear_part(&mut self, plan: &Plan, step: usize, clear: usize) -> Result<(), Infallible> {
-        let (view, value) = &plan.steps[step].clears[clear];
-        self.lines.push(format!("clear {} to {} for {}", part(plan, view), value_text(value), plan.steps[step].name));
+    fn fill(&mut self, plan: &Plan, filled: &PartView, value: ClearValue) -> Result<(), Infallible> {
+        self.lines.push(format!("fill {} with {}", part(plan, filled), value_text(&value)));
         Ok(())
     }
 
-    fn run_step(&mut self, plan: &Plan, step: usize) -> Result<(), Infallible> {
-        let step = &plan.steps[step];
+    fn run_step(&mut self, plan: &Plan, run: &StepRun) -> Result<(), Infallible> {
+        let step = &plan.steps[run.step];
         let what = match &step.kind {
             StepKind::Draw { .. } => "draw".to_owned(),
             StepKind::Fullscreen { .. } => "fullscreen".to_owned(),
@@ -53,7 +53,8 @@ impl Backend for Recorder {
             StepKind::Copy { source, target } => format!("copy {} to {}", part(plan, source), part(plan, target)),
             StepKind::Clear { target, value } => format!("clear {} to {}", part(plan, target), value_text(value)),
         };
-        self.lines.push(format!("run {}: {what}", step.name));
+        let iterations = if run.iterations.is_empty() { String::new() } else { format!(" {:?}", run.iterations) };
+        self.lines.push(format!("run {}{iterations}: {what}", step.name));
         Ok(())
     }
 
@@ -105,7 +106,10 @@ fn value_text(value: &ClearValue) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::execute::{execute, execute_due, prepare};
+    use std::sync::Arc;
+
+    use crate::dirty::{Frame, Tracker};
+    use crate::execute::{execute, prepare};
     use crate::expand::types::PassId;
     use crate::plan::{MemoryFigures, Placement, PlannedResource, PlannedShape, Step, Usage};
     use crate::reflect::interface::ViewDimension;
@@ -145,6 +149,7 @@ mod tests {
             retained: None,
             alone: None,
             clear: None,
+            retained_for: Vec::new(),
             history: None,
         };
         let holders = vec![ResourceId(0), ResourceId(1)];
@@ -170,30 +175,37 @@ mod tests {
         }
     }
 
+    fn frame(plan: &Plan) -> Frame {
+        Tracker::new(Arc::new(plan.clone())).frame(&[])
+    }
+
     #[test]
     fn verbs_come_in_the_promised_order() {
         let plan = plan();
         let mut recorder = Recorder::default();
-        prepare(&plan, &mut recorder).unwrap();
-        execute(&plan, &mut recorder).unwrap();
+        prepare(&plan, &[None], &mut recorder).unwrap();
+        execute(&plan, &frame(&plan), &mut recorder).unwrap();
         let wanted = "create memory 0: arena of 272 bytes for a, b\n\
             prepare reset\n\
             prepare copy\n\
             run reset: clear a.mip(0).layer(0) to zero\n\
-            clear b.mip(0).layer(0) to uint (1, 2, 3, 4) for copy\n\
+            fill b.mip(0).layer(0) with uint (1, 2, 3, 4)\n\
             run copy: copy a.mip(0).layer(0) to b.mip(0).layer(0)\n\
             submit\n";
         assert_eq!(recorder.text(), wanted);
     }
 
     #[test]
-    fn only_what_is_due_runs() {
+    fn what_is_taken_over_is_not_created_and_nothing_is_submitted_for_nothing() {
+        let plan = plan();
         let mut recorder = Recorder::default();
-        execute_due(&plan(), [1], &mut recorder).unwrap();
-        assert_eq!(recorder.lines.len(), 3);
-        assert!(recorder.lines[0].ends_with("for copy"));
+        prepare(&plan, &[Some(MemoryId(0))], &mut recorder).unwrap();
+        assert_eq!(recorder.text(), "prepare reset\nprepare copy\n");
+        let mut tracker = Tracker::new(Arc::new(plan.clone()));
+        let first = tracker.frame(&[]);
+        tracker.commit(&first, &[]);
         let mut idle = Recorder::default();
-        execute_due(&plan(), [], &mut idle).unwrap();
+        execute(&plan, &tracker.frame(&[]), &mut idle).unwrap();
         assert_eq!(idle.text(), "");
     }
 
@@ -211,11 +223,11 @@ mod tests {
             Err("prepare")
         }
 
-        fn clear_part(&mut self, _: &Plan, _: usize, _: usize) -> Result<(), &'static str> {
+        fn fill(&mut self, _: &Plan, _: &PartView, _: ClearValue) -> Result<(), &'static str> {
             Ok(())
         }
 
-        fn run_step(&mut self, _: &Plan, _: usize) -> Result<(), &'static str> {
+        fn run_step(&mut self, _: &Plan, _: &StepRun) -> Result<(), &'static str> {
             Err("run")
         }
 
@@ -232,8 +244,8 @@ mod tests {
     #[test]
     fn all_errors_of_preparation_and_the_first_of_a_frame() {
         let mut broken = Broken(Vec::new());
-        assert_eq!(prepare(&plan(), &mut broken), Err(vec!["prepare"; 2]));
-        assert_eq!(execute(&plan(), &mut broken), Err("run"));
+        assert_eq!(prepare(&plan(), &[], &mut broken), Err(vec!["prepare"; 2]));
+        assert_eq!(execute(&plan(), &frame(&plan()), &mut broken), Err("run"));
         assert_eq!(broken.0, ["abandon"]);
     }
 }

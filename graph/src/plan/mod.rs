@@ -89,6 +89,8 @@ pub struct PlannedResource {
     pub alone: Option<Alone>,
     /// The value of parts that nothing made.
     pub clear: Option<ClearValue>,
+    /// The inputs that reach a reader and not the maker: for their sake it is retained.
+    pub retained_for: Vec<InputId>,
     /// Whose past it is, if it is one.
     pub history: Option<History>,
 }
@@ -116,6 +118,14 @@ pub struct Placement {
 pub enum Retained {
     /// It is an output that was asked for.
     Output,
+    /// It is remembered, or holds what is.
+    History,
+    /// Passes that run a few at a time make or read it.
+    Amortised,
+    /// The author says so.
+    Kept,
+    /// A reader can run without its maker.
+    Read,
 }
 
 /// Why no other resource uses the same bytes. Every refusal has a name.

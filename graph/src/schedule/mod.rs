@@ -17,11 +17,13 @@ pub(crate) mod part;
 mod problems;
 mod versions;
 
+pub(crate) use versions::writes;
+
 use crate::allocate::model::Model;
 use crate::bind::types::Bound;
 use crate::diagnostic::{Diagnostic, has_errors};
 use crate::expand::types::{ClearValue, PassId};
-use crate::plan::{Culled, PartView};
+use crate::plan::{Culled, PartView, Retained};
 
 /// What runs, in order, and what does not.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,8 +39,8 @@ pub struct Schedule {
     pub initial_clears: Vec<(PassId, PartView, ClearValue)>,
 }
 
-/// Schedules a bound pipeline. The schedule is there if none of the problems is an error.
-pub fn schedule(bound: &Bound) -> (Option<Schedule>, Vec<Diagnostic>) {
+/// Schedules a bound pipeline, given why each resource outlives the frame, if it does. The schedule is there if none of the problems is an error.
+pub fn schedule(bound: &Bound, retained: &[Option<Retained>]) -> (Option<Schedule>, Vec<Diagnostic>) {
     let grids = versions::versions(bound);
     let mut found = problems::problems(bound, &grids);
     let dag = dag::dag(bound, &grids);
@@ -53,7 +55,7 @@ pub fn schedule(bound: &Bound) -> (Option<Schedule>, Vec<Diagnostic>) {
         found.extend(problems::nothing_runs(bound));
         return (None, found);
     }
-    let model = Model::new(bound, |pass| alive[pass]);
+    let model = Model::new(bound, retained, |pass| alive[pass]);
     let orders = order::orders(&dag, &alive, &model);
     let culled = cull::culled(bound, &dag, &alive);
     let initial_clears = clears::initial_clears(bound, &grids, &orders.chosen);

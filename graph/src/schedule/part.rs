@@ -10,7 +10,7 @@ use crate::plan::PartView;
 use crate::reflect::interface::ViewDimension;
 
 /// Mip levels and layers.
-#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(crate) struct Rect {
     pub(crate) mips: (u32, u32),
     pub(crate) layers: (u32, u32),
@@ -57,6 +57,14 @@ impl Rect {
             _ => ViewDimension::D2,
         };
         PartView { resource, mips: self.mips.0..self.mips.1, layers: self.layers.0..self.layers.1, dimension }
+    }
+
+    /// The same for a planned resource.
+    pub(crate) fn view_in(&self, resource: crate::expand::types::ResourceId, shape: &crate::plan::PlannedShape) -> PartView {
+        match shape {
+            crate::plan::PlannedShape::Texture(shape, _) => self.view(resource, &Shape::Texture(shape.clone())),
+            crate::plan::PlannedShape::Buffer(bytes) => self.view(resource, &Shape::Buffer { bytes: *bytes }),
+        }
     }
 
     /// The name of this part of a resource: `x`, `x.mip(2)`, `x.face(1)`, `x.mips(2..5).layer(0)`.

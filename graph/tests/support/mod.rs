@@ -15,6 +15,7 @@ use luminaire_graph::assemble::assemble;
 use luminaire_graph::bind::types::Bound;
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, render};
+use luminaire_graph::dirty::retention;
 use luminaire_graph::expand::types::*;
 use luminaire_graph::format::Format;
 use luminaire_graph::lifetime::{Lifetimes, lifetimes};
@@ -268,19 +269,19 @@ pub struct Planned {
 impl Fixture {
     /// The schedule; panics on an error.
     pub fn schedule(&self) -> Schedule {
-        let (schedule, problems) = schedule(&self.bound);
+        let (schedule, problems) = schedule(&self.bound, &retention(&self.bound).retained);
         schedule.unwrap_or_else(|| panic!("{}", render(&problems, &self.sources, false)))
     }
 
     /// The problems of scheduling, as text.
     pub fn problems(&self) -> String {
-        render(&schedule(&self.bound).1, &self.sources, false)
+        render(&schedule(&self.bound, &retention(&self.bound).retained).1, &self.sources, false)
     }
 
     /// Plans on a device.
     pub fn planned_on(&self, device: &DeviceFacts) -> Result<Planned, Vec<Diagnostic>> {
         let schedule = self.schedule();
-        let lifetimes = lifetimes(&self.bound, &schedule);
+        let lifetimes = lifetimes(&self.bound, &schedule, retention(&self.bound).retained);
         let allocation = allocate(&self.bound, &schedule, &lifetimes, device)?;
         Ok(Planned { schedule, lifetimes, allocation })
     }
@@ -294,7 +295,7 @@ impl Fixture {
     /// The whole plan.
     pub fn plan(&self) -> Plan {
         let Planned { schedule, lifetimes, allocation } = self.planned();
-        assemble(self.bound.clone(), schedule, lifetimes, allocation, "test.graph", [64, 64])
+        assemble(self.bound.clone(), schedule, lifetimes, allocation, retention(&self.bound).for_inputs, "test.graph", [64, 64])
     }
 
     /// The names of the passes that run, in order.

@@ -1,0 +1,241 @@
+//! What is due, and who has to run for it.
+//!
+//! A worklist: each node and source is entered once, so that a frame costs what its changes reach.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+
+use super::flow::Flow;
+use super::pull::Pull;
+use super::tracker::Tracker;
+use super::{Frame, Remembered, StepRun, Why};
+use crate::expand::types::{ClearValue, ResourceId, Run};
+use crate::plan::{InputId, PartView, Step, StepKind};
+
+/// The nodes whose values change in a frame.
+pub(super) struct Closure<'a> {
+    tracker: &'a Tracker,
+    flow: &'a Flow,
+    /// Nodes whose value changes, with the first reason.
+    due: BTreeMap<u32, Why>,
+    open: Vec<u32>,
+    /// Sources that changed, with the cycle of the maker; twice, if by makers of two cycles.
+    sources: HashMap<u32, (u32, bool)>,
+    cycles: BTreeSet<u32>,
+    /// Amortised nodes that start anew.
+    restarted: BTreeSet<u32>,
+    /// Units of spread loops that a change reached.
+    called: BTreeSet<u32>,
+}
+
+impl<'a> Closure<'a> {
+    pub(super) fn new(tracker: &'a Tracker) -> Closure<'a> {
+        Closure {
+            tracker,
+            flow: &tracker.flow,
+            due: BTreeMap::new(),
+            open: Vec::new(),
+            sources: HashMap::new(),
+            cycles: BTreeSet::new(),
+            restarted: BTreeSet::new(),
+            called: BTreeSet::new(),
+        }
+    }
+
+    /// Everything that runs.
+    pub(super) fn frame(mut self, revisions: &[u64]) -> Frame {
+        let tracker = self.tracker;
+        for node in &tracker.fresh {
+            self.reach(*node, Why::New, true);
+        }
+        for (input, (seen, revision)) in tracker.seen.iter().zip(revisions).enumerate() {
+            if *seen != Some(*revision) {
+                for node in self.flow.input_readers.of(input) {
+                    self.reach(*node, Why::Input(InputId(input as u32)), true);
+                }
+            }
+        }
+        for node in &tracker.always {
+            self.reach(*node, Why::EveryFrame, false);
+        }
+        for node in &tracker.recalling {
+            self.reach(*node, Why::Remembers, false);
+        }
+        for (node, gathered) in &tracker.gathered {
+            if matches!(self.flow.nodes[*node as usize].run, Run::Accumulate(count) if *gathered < count) {
+                self.change(*node, Why::Accumulates);
+            }
+        }
+        self.spread();
+        for spread in 0..tracker.plan.spreads.len() as u32 {
+            self.choose(spread);
+            self.spread();
+        }
+        self.finish()
+    }
+
+    /// A change reaches a node; from outside of its cycle or from within.
+    fn reach(&mut self, node: u32, why: Why, outside: bool) {
+        let cycle = self.flow.cycle_of[node as usize];
+        if outside && self.cycles.insert(cycle) {
+            for member in self.flow.amortised.of(cycle as usize) {
+                self.restart(*member);
+            }
+        }
+        if !matches!(self.flow.nodes[node as usize].run, Run::Accumulate(_) | Run::Spread { .. }) {
+            self.change(node, why);
+        }
+    }
+
+    fn restart(&mut self, node: u32) {
+        match self.flow.nodes[node as usize].run {
+            Run::Accumulate(count) => {
+                self.restarted.insert(node);
+                if count > 0 {
+                    self.change(node, Why::Accumulates);
+                }
+            }
+            Run::Spread { .. } => {
+                self.restarted.insert(node);
+                self.called.insert(self.flow.unit_of[node as usize]);
+            }
+            Run::OnChange | Run::EveryFrame => {}
+        }
+    }
+
+    /// A node's value changes.
+    fn change(&mut self, node: u32, why: Why) {
+        if let std::collections::btree_map::Entry::Vacant(entry) = self.due.entry(node) {
+            entry.insert(why);
+            self.open.push(node);
+        }
+    }
+
+    /// Carries changes on to readers and modifiers.
+    fn spread(&mut self) {
+        while let Some(node) = self.open.pop() {
+            let cycle = self.flow.cycle_of[node as usize];
+            let step = self.flow.nodes[node as usize].step as usize;
+            for source in self.flow.feeds.of(node as usize) {
+                let resource = self.flow.sources[*source as usize].resource;
+                // A second maker tells a reader something new only if it stands in another cycle.
+                let known = self.sources.get(source).copied();
+                if known.is_some_and(|(first, both)| both || first == cycle) {
+                    continue;
+                }
+                self.sources.insert(*source, known.map_or((cycle, false), |(first, _)| (first, true)));
+                for reader in self.flow.readers.of(*source as usize) {
+                    let outside = self.flow.cycle_of[*reader as usize] != cycle;
+                    self.reach(*reader, Why::Reads { step, resource }, outside);
+                }
+            }
+            for modifier in self.flow.modifiers.of(node as usize) {
+                let outside = self.flow.cycle_of[*modifier as usize] != cycle;
+                let resource = self.tracker.plan.steps[step].uses.iter().find(|used| crate::schedule::writes(used.role));
+                let resource = resource.map_or(ResourceId(0), |used| used.resource);
+                self.reach(*modifier, Why::Reads { step, resource }, outside);
+            }
+        }
+    }
+
+    /// Whose turn it is among the iterations of a loop: longest waiting first, then by index.
+    fn choose(&mut self, spread: u32) {
+        let tracker = self.tracker;
+        let Some(rule) = tracker.plan.spreads.get(spread as usize) else { return };
+        let units: BTreeSet<u32> = tracker.waiting.union(&self.called).copied().collect();
+        let mut candidates: Vec<(u64, u32, u32)> = Vec::new();
+        for unit in units {
+            let first = self.flow.nodes[self.flow.units.of(unit as usize)[0] as usize];
+            let Run::Spread { spread: own, iteration } = first.run else { continue };
+            let turn = tracker.turns.get(&unit).copied().unwrap_or_default();
+            let since = if turn.remaining == 0 { tracker.frames } else { turn.since };
+            if own == spread {
+                candidates.push((since, iteration, unit));
+            }
+        }
+        candidates.sort_unstable();
+        for (_, _, unit) in candidates.into_iter().take(rule.per_frame as usize) {
+            for node in self.flow.units.of(unit as usize) {
+                self.change(*node, Why::Turn);
+            }
+        }
+    }
+
+    /// From what changes to what runs, as steps in order.
+    fn finish(self) -> Frame {
+        let tracker = self.tracker;
+        let mut pull = Pull::new(tracker);
+        for node in self.due.keys() {
+            pull.run(*node);
+        }
+        pull.finish_ends(!self.due.is_empty());
+        let mut frame = Frame {
+            changed: self.due.keys().copied().collect(),
+            restarted: self.restarted.iter().copied().collect(),
+            units: pull.units(),
+            ..Frame::default()
+        };
+        let mut nodes: Vec<u32> = frame.units.iter().flat_map(|unit| self.flow.units.of(*unit as usize)).copied().collect();
+        nodes.sort_unstable();
+        for node in nodes {
+            let entry = self.flow.nodes[node as usize];
+            let why = self.due.get(&node).copied().or_else(|| pull.why(self.flow.unit_of[node as usize])).unwrap_or(Why::New);
+            match frame.runs.last_mut().filter(|run| run.step == entry.step as usize) {
+                Some(run) => run.iterations.extend(entry.iteration),
+                None => frame.runs.push(StepRun {
+                    step: entry.step as usize,
+                    iterations: entry.iteration.into_iter().collect(),
+                    accumulated: self.accumulated(node),
+                    fills: Vec::new(),
+                    clears: Vec::new(),
+                    remembered: self.remembered(&tracker.plan.steps[entry.step as usize]),
+                    why,
+                }),
+            }
+        }
+        for run in &mut frame.runs {
+            run.clears = clears(&tracker.plan.steps[run.step], run);
+        }
+        pull.fill(&mut frame);
+        frame
+    }
+
+    fn accumulated(&self, node: u32) -> u32 {
+        if self.restarted.contains(&node) { 0 } else { self.tracker.gathered.get(&node).copied().unwrap_or(0) }
+    }
+
+    fn remembered(&self, step: &Step) -> Option<Remembered> {
+        let StepKind::Remember { source, .. } = &step.kind else { return None };
+        Some(self.tracker.past.get(&source.resource).copied().unwrap_or(Remembered::Gone))
+    }
+}
+
+/// What a step's clears come to: those of an accumulating step only at its start; of a batched one in the parts of the iterations that
+/// run, or in the part that all of them name if all run.
+fn clears(step: &Step, run: &StepRun) -> Vec<(PartView, ClearValue)> {
+    if matches!(step.run, Run::Accumulate(_)) && run.accumulated > 0 {
+        return Vec::new();
+    }
+    if step.batch.is_empty() {
+        return step.clears.clone();
+    }
+    let mut found = Vec::new();
+    for (part, value) in &step.clears {
+        let whole = (part.mips.clone(), part.layers.clone());
+        let Some(used) = step.uses.iter().position(|used| used.resource == part.resource && crate::schedule::writes(used.role)) else {
+            continue;
+        };
+        let parts = || step.batch.iter().filter_map(|iteration| iteration.parts.get(used));
+        if parts().any(|part| *part == whole) {
+            if run.iterations.len() == step.batch.len() && !matches!(step.run, Run::Spread { .. }) {
+                found.push((part.clone(), *value));
+            }
+            continue;
+        }
+        for iteration in &run.iterations {
+            if let Some((mips, layers)) = step.batch.get(*iteration as usize).and_then(|iteration| iteration.parts.get(used)) {
+                found.push((PartView { mips: mips.clone(), layers: layers.clone(), ..part.clone() }, *value));
+            }
+        }
+    }
+    found
+}

@@ -1,0 +1,1 @@
+//! Why each pass ran or did not.

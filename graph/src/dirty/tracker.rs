@@ -1,0 +1,353 @@
+//! What a plan's memories hold, what each pass last ran on, and whose turn it is.
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+use super::closure::Closure;
+use super::flow::{Flow, FlowInput};
+use super::maker::Names;
+use super::{Frame, Remembered};
+use crate::expand::types::{ClearValue, OnResize, ResourceId, Run};
+use crate::plan::{Input, PartView, Plan, PlannedShape, Step};
+use crate::schedule::part::Rect;
+
+/// Where content is. Only [`Tracker::commit`], [`Tracker::fail`], [`Tracker::lose`] and [`Tracker::adopt`] change it.
+#[derive(Debug, Default)]
+pub(super) struct Held {
+    /// By piece.
+    pub(super) pieces: Vec<bool>,
+    /// By resource: whether the parts that nothing makes hold the declared value.
+    pub(super) declared: Vec<bool>,
+    /// By memory: the resources whose content it has.
+    pub(super) residents: Vec<Vec<ResourceId>>,
+    /// Pieces of amortised units that are not held: they are filled, never pulled.
+    pub(super) unheld_amortised: BTreeSet<u32>,
+}
+
+/// The turn of an iteration of a spread loop.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(super) struct Turn {
+    /// Runs to go.
+    pub(super) remaining: u32,
+    /// The frame since which it waits.
+    pub(super) since: u64,
+}
+
+/// Decides what runs. Knows one plan at a time.
+#[derive(Debug)]
+pub struct Tracker {
+    pub(super) plan: Arc<Plan>,
+    pub(super) flow: Flow,
+    pub(super) names: Names,
+    pub(super) held: Held,
+    /// Nodes that have not run as they are.
+    pub(super) fresh: BTreeSet<u32>,
+    /// By input: the revision when its readers last ran.
+    pub(super) seen: Vec<Option<u64>>,
+    /// Nodes that run in every frame.
+    pub(super) always: Vec<u32>,
+    /// Accumulating nodes, and how much they have gathered.
+    pub(super) gathered: BTreeMap<u32, u32>,
+    /// Units of spread iterations that stand in the plan.
+    pub(super) turns: BTreeMap<u32, Turn>,
+    /// Units whose turn has not come.
+    pub(super) waiting: BTreeSet<u32>,
+    /// Nodes that remember something that changed in the last frame.
+    pub(super) recalling: BTreeSet<u32>,
+    /// By resource that is remembered: where its value of the frame before is.
+    pub(super) past: BTreeMap<ResourceId, Remembered>,
+    /// Of what backends carry: the shape.
+    pub(super) carried: BTreeMap<String, PlannedShape>,
+    /// Something that must be there at the end of a frame may be missing.
+    pub(super) ends_open: bool,
+    /// Submitted frames.
+    pub(super) frames: u64,
+}
+
+impl Tracker {
+    /// For a plan of which nothing is held.
+    pub fn new(plan: Arc<Plan>) -> Tracker {
+        let steps: Vec<&Step> = plan.steps.iter().collect();
+        let outputs: Vec<(ResourceId, Rect)> =
+            plan.outputs.iter().map(|output| (output.view.resource, Rect::new(&output.view.mips, &output.view.layers))).collect();
+        let flow = Flow::of(&FlowInput { steps: &steps, resources: plan.resources.len(), inputs: plan.inputs.len(), outputs: &outputs });
+        let nodes = || (0u32..).zip(&flow.nodes);
+        let always = nodes().filter(|(_, node)| node.run == Run::EveryFrame).map(|(at, _)| at).collect();
+        let gathered = nodes().filter(|(_, node)| matches!(node.run, Run::Accumulate(_))).map(|(at, _)| (at, 0)).collect();
+        let spread = nodes().filter(|(_, node)| matches!(node.run, Run::Spread { .. }));
+        let turns = spread.map(|(at, _)| (flow.unit_of[at as usize], Turn::default())).collect();
+        let past = (0..plan.resources.len()).filter(|index| !flow.recallers.of(*index).is_empty());
+        let past = past.map(|index| (ResourceId(index as u32), Remembered::Gone)).collect();
+        let mut tracker = Tracker {
+            fresh: (0..flow.nodes.len() as u32).collect(),
+            seen: vec![None; plan.inputs.len()],
+            held: Held {
+                pieces: vec![false; flow.pieces.len()],
+                declared: vec![false; plan.resources.len()],
+                residents: vec![Vec::new(); plan.memories.len()],
+                unheld_amortised: BTreeSet::new(),
+            },
+            names: Names::default(),
+            always,
+            gathered,
+            turns,
+            waiting: BTreeSet::new(),
+            recalling: BTreeSet::new(),
+            past,
+            carried: BTreeMap::new(),
+            ends_open: true,
+            frames: 0,
+            flow,
+            plan,
+        };
+        tracker.find_unheld();
+        tracker
+    }
+
+    /// The plan that it knows.
+    pub fn plan(&self) -> &Arc<Plan> {
+        &self.plan
+    }
+
+    /// The inputs whose revisions a frame takes, in order.
+    pub fn inputs(&self) -> &[Input] {
+        &self.plan.inputs
+    }
+
+    /// Decides what runs, given the revision of each input. Changes nothing.
+    pub fn frame(&self, revisions: &[u64]) -> Frame {
+        Closure::new(self).frame(revisions)
+    }
+
+    /// Records a frame that was submitted.
+    pub fn commit(&mut self, frame: &Frame, revisions: &[u64]) {
+        if frame.is_empty() {
+            return;
+        }
+        for (seen, revision) in self.seen.iter_mut().zip(revisions) {
+            *seen = Some(*revision);
+        }
+        self.occupy(frame);
+        for node in &frame.changed {
+            self.fresh.remove(node);
+        }
+        let amortised = |node: &u32| !matches!(self.flow.nodes[*node as usize].run, Run::Spread { .. } | Run::Accumulate(_));
+        self.fresh.retain(amortised);
+        self.advance_turns(frame);
+        self.recalling.clear();
+        for node in &frame.changed {
+            for piece in self.flow.unit_pieces.of(self.flow.unit_of[*node as usize] as usize) {
+                let resource = self.flow.pieces[*piece as usize].resource;
+                let recallers = self.flow.recallers.of(resource.index());
+                if !recallers.is_empty() && self.writes(*node, resource) {
+                    self.recalling.extend(recallers);
+                }
+            }
+        }
+        for (resource, past) in &mut self.past {
+            if *past != Remembered::Here {
+                self.recalling.extend(self.flow.recallers.of(resource.index()));
+            }
+            *past = Remembered::Here;
+        }
+        self.carried.clear();
+        self.ends_open = false;
+        self.frames += 1;
+    }
+
+    /// Records that a frame was not submitted, although some of it may have run.
+    pub fn fail(&mut self, frame: &Frame) {
+        let mut touched: BTreeSet<ResourceId> = frame.filled.iter().map(|resource| ResourceId(*resource)).collect();
+        for unit in &frame.units {
+            touched.extend(self.flow.unit_pieces.of(*unit as usize).iter().map(|piece| self.flow.pieces[*piece as usize].resource));
+        }
+        let fills = frame.runs.iter().flat_map(|run| &run.fills).chain(&frame.last_fills);
+        touched.extend(fills.map(|(part, _)| part.resource));
+        for resource in touched {
+            self.evict_for(resource);
+            self.evict(resource);
+            if let Some(past) = self.past.get_mut(&resource).filter(|past| **past == Remembered::Here) {
+                *past = Remembered::Gone;
+                self.recalling.extend(self.flow.recallers.of(resource.index()));
+            }
+        }
+        self.start_unheld_anew();
+        self.ends_open = true;
+    }
+
+    /// Records that the device is lost: nothing is held.
+    pub fn lose(&mut self) {
+        let frames = self.frames;
+        *self = Tracker { frames, ..Tracker::new(Arc::clone(&self.plan)) };
+    }
+
+    /// Whether a node writes a resource.
+    pub(super) fn writes(&self, node: u32, resource: ResourceId) -> bool {
+        let step = &self.plan.steps[self.flow.nodes[node as usize].step as usize];
+        step.uses.iter().any(|used| used.resource == resource && crate::schedule::writes(used.role))
+    }
+
+    /// Moves content as the frame's steps did, in their order.
+    fn occupy(&mut self, frame: &Frame) {
+        for run in &frame.runs {
+            for (part, _) in &run.fills {
+                self.fill(part.resource);
+            }
+            let nodes = self.flow.of_step(run.step);
+            let ran: Vec<u32> = match run.iterations.as_slice() {
+                [] => nodes.collect(),
+                some => some.iter().map(|iteration| nodes.start + iteration).collect(),
+            };
+            let mut written: Vec<ResourceId> = Vec::new();
+            let step = &self.plan.steps[run.step];
+            written.extend(step.uses.iter().filter(|used| crate::schedule::writes(used.role)).map(|used| used.resource));
+            for resource in written {
+                self.settle(resource);
+            }
+            for node in ran {
+                let unit = self.flow.unit_of[node as usize] as usize;
+                for piece in self.flow.unit_pieces.of(unit) {
+                    // The last of the unit's steps leaves the value; until then nobody relies on it.
+                    self.held.pieces[*piece as usize] = true;
+                    self.held.unheld_amortised.remove(piece);
+                }
+            }
+        }
+        for (part, _) in &frame.last_fills {
+            self.fill(part.resource);
+        }
+        for resource in &frame.filled {
+            self.held.declared[*resource as usize] = true;
+        }
+    }
+
+    /// A declared value is set in a resource: in parts that nothing makes, and in those of amortised units that have not run.
+    fn fill(&mut self, resource: ResourceId) {
+        self.settle(resource);
+        for piece in self.flow.resource_pieces.of(resource.index()) {
+            if self.held.unheld_amortised.remove(piece) {
+                self.held.pieces[*piece as usize] = true;
+            }
+        }
+    }
+
+    /// Makes a resource the holder of its bytes.
+    fn settle(&mut self, resource: ResourceId) {
+        self.evict_for(resource);
+        let Some(placement) = self.plan.resources[resource.index()].placement else { return };
+        let residents = &mut self.held.residents[placement.memory.index()];
+        if !residents.contains(&resource) {
+            residents.push(resource);
+        }
+    }
+
+    /// Whatever else had these bytes is gone.
+    fn evict_for(&mut self, resource: ResourceId) {
+        let Some(placement) = self.plan.resources[resource.index()].placement else { return };
+        let others: Vec<ResourceId> = self.held.residents[placement.memory.index()]
+            .iter()
+            .copied()
+            .filter(|other| *other != resource && overlap(&self.plan, *other, resource))
+            .collect();
+        for other in others {
+            self.evict(other);
+        }
+    }
+
+    fn evict(&mut self, resource: ResourceId) {
+        for piece in self.flow.resource_pieces.of(resource.index()) {
+            self.held.pieces[*piece as usize] = false;
+            if self.flow.is_amortised(self.flow.pieces[*piece as usize].unit) {
+                self.held.unheld_amortised.insert(*piece);
+            }
+        }
+        self.held.declared[resource.index()] = false;
+        if let Some(placement) = self.plan.resources[resource.index()].placement {
+            self.held.residents[placement.memory.index()].retain(|resident| *resident != resource);
+        }
+    }
+
+    pub(super) fn find_unheld(&mut self) {
+        let unheld =
+            (0u32..).zip(&self.flow.pieces).filter(|(at, piece)| !self.held.pieces[*at as usize] && self.flow.is_amortised(piece.unit));
+        self.held.unheld_amortised = unheld.map(|(at, _)| at).collect();
+    }
+
+    /// Amortised units whose content is lost, and histories that are, start again.
+    pub(super) fn start_unheld_anew(&mut self) {
+        for piece in &self.held.unheld_amortised {
+            self.fresh.extend(self.flow.units.of(self.flow.pieces[*piece as usize].unit as usize));
+        }
+        for node in self.past.keys().flat_map(|resource| self.flow.recallers.of(resource.index())) {
+            let unit = self.flow.unit_of[*node as usize] as usize;
+            if self.flow.unit_pieces.of(unit).iter().any(|piece| !self.held.pieces[*piece as usize]) {
+                self.recalling.insert(*node);
+            }
+        }
+    }
+
+    /// Counts what amortised units did.
+    fn advance_turns(&mut self, frame: &Frame) {
+        let now = self.frames;
+        for node in &frame.restarted {
+            match self.flow.nodes[*node as usize].run {
+                Run::Accumulate(_) => {
+                    self.gathered.insert(*node, 0);
+                }
+                Run::Spread { spread, .. } => {
+                    let unit = self.flow.unit_of[*node as usize];
+                    let rounds = self.plan.spreads.get(spread as usize).map_or(1, |spread| spread.rounds);
+                    let turn = self.turns.entry(unit).or_default();
+                    if turn.remaining == 0 {
+                        turn.since = now;
+                    }
+                    turn.remaining = rounds;
+                    self.waiting.insert(unit);
+                }
+                _ => {}
+            }
+        }
+        let mut ran: BTreeSet<u32> = BTreeSet::new();
+        for node in &frame.changed {
+            match self.flow.nodes[*node as usize].run {
+                Run::Accumulate(_) => *self.gathered.entry(*node).or_default() += 1,
+                Run::Spread { .. } => {
+                    ran.insert(self.flow.unit_of[*node as usize]);
+                }
+                _ => {}
+            }
+        }
+        for unit in ran {
+            let turn = self.turns.entry(unit).or_default();
+            turn.remaining = turn.remaining.saturating_sub(1);
+            turn.since = now + 1;
+            if turn.remaining == 0 {
+                self.waiting.remove(&unit);
+            }
+        }
+    }
+
+    /// What a history gets where the value of the frame before has another extent.
+    pub(super) fn on_resize(plan: &Plan, of: ResourceId) -> OnResize {
+        let histories = plan.resources.iter().filter_map(|resource| resource.history);
+        histories.filter(|history| history.of == of).map(|history| history.on_resize).next().unwrap_or_default()
+    }
+
+    /// Parts of a resource as fills.
+    pub(super) fn fills_of<'a>(&'a self, resource: ResourceId, rects: &'a [Rect]) -> impl Iterator<Item = (PartView, ClearValue)> + 'a {
+        let planned = &self.plan.resources[resource.index()];
+        let value = planned.clear.unwrap_or(ClearValue::Zero);
+        rects.iter().map(move |rect| (rect.view_in(resource, &planned.shape), value))
+    }
+}
+
+/// Whether two resources of one memory have a byte in common.
+pub(super) fn overlap(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
+    let bytes = |id: ResourceId| {
+        let resource = &plan.resources[id.index()];
+        let start = resource.placement.map_or(0, |placement| placement.offset);
+        (resource.placement.map(|placement| placement.memory), start, start.saturating_add(resource.bytes))
+    };
+    let (a, b) = (bytes(a), bytes(b));
+    a.0 == b.0 && a.0.is_some() && a.1 < b.2 && b.1 < a.2
+}
