@@ -19,6 +19,7 @@ pub mod execute;
 pub mod expand;
 pub mod expression;
 pub mod format;
+pub mod harness;
 pub mod lifetime;
 pub mod plan;
 pub mod published;

@@ -15,7 +15,6 @@
 mod adopt;
 mod cells;
 mod closure;
-pub mod explain;
 mod flow;
 mod maker;
 mod pull;
@@ -80,6 +79,17 @@ pub enum Remembered {
     Carried,
     /// Nowhere: the history gets its first value.
     Gone,
+}
+
+/// Why a pass does not run.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Idle {
+    /// Nothing that it reads has changed since it ran.
+    Clean,
+    /// Its iteration's turn has not come.
+    Waits,
+    /// It has gathered so many, which is all.
+    Gathered(u32),
 }
 
 /// Why a pass runs.

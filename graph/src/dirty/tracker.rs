@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::closure::Closure;
 use super::flow::{Flow, FlowInput};
 use super::maker::Names;
-use super::{Frame, Remembered};
+use super::{Frame, Idle, Remembered};
 use crate::expand::types::{ClearValue, OnResize, ResourceId, Run};
 use crate::plan::{Input, PartView, Plan, PlannedShape, Step};
 use crate::schedule::part::Rect;
@@ -179,6 +179,16 @@ impl Tracker {
     pub fn lose(&mut self) {
         let frames = self.frames;
         *self = Tracker { frames, ..Tracker::new(Arc::clone(&self.plan)) };
+    }
+
+    /// Why a step did not run in the last frame, if it did not.
+    pub fn idle(&self, step: usize) -> Idle {
+        let waits = self.flow.of_step(step).any(|node| self.waiting.contains(&self.flow.unit_of[node as usize]));
+        match self.plan.steps[step].run {
+            Run::Accumulate(count) => Idle::Gathered(count),
+            Run::Spread { .. } if waits => Idle::Waits,
+            _ => Idle::Clean,
+        }
     }
 
     /// Whether a node writes a resource.

@@ -234,7 +234,7 @@ pub(super) fn culled(plan: &Plan, reason: &CullReason) -> String {
 }
 
 /// The other holders of a resource's memory that have some of the same bytes at another time, by first use.
-pub(super) fn sharers(plan: &Plan, id: ResourceId) -> Vec<ResourceId> {
+pub(crate) fn sharers(plan: &Plan, id: ResourceId) -> Vec<ResourceId> {
     let bytes = |id: ResourceId| {
         let resource = plan.resources.get(id.index())?;
         let start = resource.placement?.offset;

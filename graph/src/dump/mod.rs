@@ -4,11 +4,14 @@
 
 mod describe;
 mod dot;
+mod explain;
 mod json;
 mod steps;
 mod text;
 pub(crate) mod units;
 
+pub(crate) use describe::sharers;
 pub use dot::dot;
+pub use explain::{explain_json, explain_text};
 pub use json::json;
 pub use text::text;

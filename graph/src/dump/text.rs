@@ -32,6 +32,7 @@ pub fn text(plan: &Plan, sources: &SourceMap) -> String {
     }
     resources(plan, sources, &mut out);
     memories(plan, &mut out);
+    inputs(plan, &mut out);
     out.section("passes that do not run", plan.culled.len());
     for culled in &plan.culled {
         out.line(1, &format!("{} ({}): {}", culled.name, culled.kind, describe::culled(plan, &culled.reason)));
@@ -104,6 +105,14 @@ fn memories(plan: &Plan, out: &mut Writer) {
     }
 }
 
+fn inputs(plan: &Plan, out: &mut Writer) {
+    let costs = super::explain::costs(plan);
+    out.section("inputs from outside, and what is retained so that each can change alone", costs.len());
+    for (input, bytes) in costs {
+        out.line(1, &format!("{input}: {}", human(bytes)));
+    }
+}
+
 fn figures(plan: &Plan, out: &mut Writer) {
     let figures = &plan.figures;
     out.0.push('\n');
@@ -114,7 +123,7 @@ fn figures(plan: &Plan, out: &mut Writer) {
         ("bound", figures.bound, "the most bytes in use at once: no plan with this order takes less"),
         ("declared bound", figures.declared_bound, "the same for the order of the file"),
         ("placed", figures.placed, "if resources could be placed by byte, in units of 64 KiB"),
-        ("retained", figures.retained, "outputs, which share with nothing"),
+        ("retained", figures.retained, "outputs and what can be read without being made again: shares with nothing"),
         ("total", figures.reached.saturating_add(figures.retained), "reached and retained"),
     ] {
         out.line(1, &format!("{what:<16} {:>12} {bytes:>16} bytes  {meaning}", human(bytes)));

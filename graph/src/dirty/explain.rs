@@ -1,1 +1,0 @@
-//! Why each pass ran or did not.
