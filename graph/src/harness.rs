@@ -27,7 +27,7 @@ use std::sync::Arc;
 
 use crate::compile::{CompileInput, compile};
 use crate::diagnostic::render;
-use crate::dirty::{Frame, Tracker};
+use crate::dirty::{Frame, StepRun, Tracker};
 use crate::dump;
 use crate::plan::{Input, Plan};
 
@@ -42,9 +42,17 @@ pub struct Harness {
 impl Harness {
     /// Compiles a pipeline. The error is every problem as text, with its place.
     pub fn new(input: &CompileInput<'_>) -> Result<Harness, String> {
-        let plan = plan(input)?;
+        Ok(Harness::play(plan(input)?))
+    }
+
+    /// For a plan that stands already.
+    pub fn of(plan: Plan) -> Harness {
+        Harness::play(Arc::new(plan))
+    }
+
+    fn play(plan: Arc<Plan>) -> Harness {
         let revisions = vec![0; plan.inputs.len()];
-        Ok(Harness { tracker: Tracker::new(plan), revisions, last: Frame::default() })
+        Harness { tracker: Tracker::new(plan), revisions, last: Frame::default() }
     }
 
     /// Turns to another plan, as after a resize, a changed parameter or an edited file. What is the same stays held.
@@ -66,14 +74,42 @@ impl Harness {
     pub fn frame(&mut self) -> Vec<String> {
         let frame = self.tracker.frame(&self.revisions);
         self.tracker.commit(&frame, &self.revisions);
-        let steps = &self.tracker.plan().steps;
-        let ran = frame.runs.iter().map(|run| {
-            let iterations = if run.iterations.is_empty() { String::new() } else { format!("{:?}", run.iterations) };
-            format!("{}{iterations}", steps[run.step].name)
-        });
-        let ran = ran.collect();
+        let ran = self.names(&frame);
         self.last = frame;
         ran
+    }
+
+    fn names(&self, frame: &Frame) -> Vec<String> {
+        let steps = &self.tracker.plan().steps;
+        let name = |run: &StepRun| {
+            let iterations = if run.iterations.is_empty() { String::new() } else { format!("{:?}", run.iterations) };
+            format!("{}{iterations}", steps[run.step].name)
+        };
+        frame.runs.iter().map(name).collect()
+    }
+
+    /// For each input, the passes that would run in the next frame if it alone changed.
+    pub fn reach(&self) -> Vec<(String, Vec<String>)> {
+        let mut revisions = self.revisions.clone();
+        let mut reach = Vec::new();
+        for (index, name) in self.inputs().into_iter().enumerate() {
+            revisions[index] += 1;
+            reach.push((name, self.names(&self.tracker.frame(&revisions))));
+            revisions[index] -= 1;
+        }
+        reach
+    }
+
+    /// The names of the inputs, as explanations show them: `camera`, `local_lights[2]`, `parameter exposure`.
+    pub fn inputs(&self) -> Vec<String> {
+        (0..self.plan().inputs.len()).map(|index| dump::input_name(self.plan(), index)).collect()
+    }
+
+    /// Changes the inputs of a name, as [`Harness::inputs`] gives them; how many there are.
+    pub fn change_named(&mut self, name: &str) -> usize {
+        let names = self.inputs();
+        let fits = self.revisions.iter_mut().zip(&names).filter(|(_, known)| *known == name);
+        fits.map(|(revision, _)| *revision += 1).count()
     }
 
     /// Plays frames until nothing runs; how many it took. `None` if something still runs after `most` of them.
@@ -124,6 +160,11 @@ impl Harness {
     /// `pass` names the only one of interest.
     pub fn explain(&self, pass: Option<&str>) -> String {
         dump::explain_text(&self.tracker, &self.last, pass)
+    }
+
+    /// The same as JSON.
+    pub fn explain_json(&self) -> serde_json::Value {
+        dump::explain_json(&self.tracker, &self.last)
     }
 }
 

@@ -16,6 +16,7 @@ Examples:
   luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set exposure=1
   luminaire check pipelines/*.ron
   luminaire plan pipelines/pbr.ron --format dot | dot -Tsvg -o plan.svg
+  luminaire explain pipelines/pbr.ron --change camera
 
 Pipelines, shaders and scenes that come with the program can be named by the same paths from anywhere; a file on disk wins.
 Exit status: 0 done, 1 something was wrong with the input or the machine (said on standard error), 2 wrong usage."
@@ -33,6 +34,8 @@ pub(crate) enum Command {
     Check(CheckArguments),
     /// Show what a pipeline compiles to: passes in order, resources, memory
     Plan(PlanArguments),
+    /// Show what each change makes run and why, what shares memory and why
+    Explain(ExplainArguments),
     /// Show the adapter, its limits, and what comes with the program
     Info,
 }
@@ -99,6 +102,40 @@ pub(crate) struct PlanArguments {
     /// Plan for these outputs alone; all if not given
     #[arg(long, value_name = "NAME")]
     pub output: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct ExplainArguments {
+    /// The pipeline: a .ron file
+    pub pipeline: String,
+    /// The pass of interest; all if not given
+    pub pass: Option<String>,
+    /// Explain the frame after this input changed; may be given several times
+    #[arg(long, value_name = "INPUT")]
+    pub change: Vec<String>,
+    /// How to show it
+    #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
+    pub format: ExplainFormat,
+    /// Width and height in pixels
+    #[arg(long, default_value = "1280x720", value_name = "WxH", value_parser = parse_size)]
+    pub size: [u32; 2],
+    /// The scene whose lights and materials decide what stands; one of everything if not given
+    #[arg(long)]
+    pub scene: Option<String>,
+    /// Set a parameter of the pipeline; may be given several times
+    #[arg(long = "set", value_name = "P=V", value_parser = parse_set)]
+    pub sets: Vec<(String, String)>,
+    /// Plan for these outputs alone; all if not given
+    #[arg(long, value_name = "NAME")]
+    pub output: Vec<String>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum ExplainFormat {
+    /// For people
+    Text,
+    /// For programs
+    Json,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

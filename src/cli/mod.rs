@@ -2,6 +2,7 @@
 
 mod arguments;
 mod check;
+mod explain;
 mod info;
 mod plan;
 mod render;
@@ -22,6 +23,7 @@ pub fn run() -> ExitCode {
         Command::Render(arguments) => render::run(arguments),
         Command::Check(arguments) => check::run(arguments),
         Command::Plan(arguments) => plan::run(arguments),
+        Command::Explain(arguments) => explain::run(arguments),
         Command::Info => info::run(),
     };
     if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }

@@ -14,20 +14,11 @@ use crate::files::DiskFiles;
 use crate::session::{LoadedScene, compile_pipeline, load_scene};
 
 pub(super) fn run(arguments: &PlanArguments) -> bool {
-    let scene = arguments.scene.as_ref().map(|path| load_scene(path, None));
-    let counts = match scene {
-        None => one_of_everything(),
-        Some(Ok(LoadedScene { world, diagnostics, sources })) => {
-            report(&diagnostics, &sources);
-            luminaire_scenes::publish::counts(&world)
-        }
-        Some(Err((diagnostics, sources))) => {
-            report(&diagnostics, &sources);
-            // What is wrong with the pipeline is said at once, too.
-            let compilation = compile_for(arguments, &one_of_everything());
-            report(&compilation.diagnostics, &compilation.sources);
-            return false;
-        }
+    let Some(counts) = counts_of(arguments.scene.as_deref()) else {
+        // What is wrong with the pipeline is said at once, too.
+        let compilation = compile_for(arguments, &one_of_everything());
+        report(&compilation.diagnostics, &compilation.sources);
+        return false;
     };
     let compilation = compile_for(arguments, &counts);
     let fine = report(&compilation.diagnostics, &compilation.sources);
@@ -56,6 +47,21 @@ fn compile_for(arguments: &PlanArguments, counts: &SceneCounts) -> Compilation {
         sets: &arguments.sets,
         outputs: (!arguments.output.is_empty()).then_some(&arguments.output),
     })
+}
+
+/// What a scene has; without one, one of everything. `None` after reporting what is wrong with it.
+pub(super) fn counts_of(scene: Option<&str>) -> Option<SceneCounts> {
+    match scene.map(|path| load_scene(path, None)) {
+        None => Some(one_of_everything()),
+        Some(Ok(LoadedScene { world, diagnostics, sources })) => {
+            report(&diagnostics, &sources);
+            Some(luminaire_scenes::publish::counts(&world))
+        }
+        Some(Err((diagnostics, sources))) => {
+            report(&diagnostics, &sources);
+            None
+        }
+    }
 }
 
 /// Counts under which every `has` stands, for plans without a scene.

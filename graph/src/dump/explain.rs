@@ -106,7 +106,7 @@ fn why(plan: &Plan, why: Why) -> (&'static str, String) {
     let resource = |id| describe::resource(plan, id);
     match why {
         Why::New => ("new", "it has not run as it is".to_owned()),
-        Why::Input(id) => ("input", format!("{} changed", input(plan, id))),
+        Why::Input(id) => ("input", format!("`{}` changed", input(plan, id))),
         Why::Reads { step: maker, resource: id } => ("reads", format!("`{}` made `{}` anew", step(maker), resource(id))),
         Why::EveryFrame => ("every-frame", "it runs in every frame".to_owned()),
         Why::Accumulates => ("accumulates", "it has not gathered all".to_owned()),
@@ -128,15 +128,20 @@ fn idle(idle: Idle) -> (&'static str, String) {
     }
 }
 
-fn input(plan: &Plan, id: InputId) -> String {
-    match plan.inputs.get(id.index()) {
-        Some(Input::Table(name)) => format!("`{name}`"),
-        Some(Input::Row(name, row)) => format!("`{name}[{row}]`"),
-        Some(Input::View(view)) => format!("the view from {}", describe::view(view.kind)),
-        Some(Input::Draws(filter, view)) => format!("what {} sees of {} surfaces", describe::view(*view), describe::objects(*filter)),
-        Some(Input::Param(name)) => format!("the parameter `{name}`"),
+/// The name of an input: `camera`, `local_lights[2]`, `view of local light 0, face 3`.
+pub(crate) fn input_name(plan: &Plan, index: usize) -> String {
+    match plan.inputs.get(index) {
+        Some(Input::Table(name)) => name.clone(),
+        Some(Input::Row(name, row)) => format!("{name}[{row}]"),
+        Some(Input::View(view)) => format!("view of {}", describe::view(view.kind)),
+        Some(Input::Draws(filter, view)) => format!("{} surfaces of {}", describe::objects(*filter), describe::view(*view)),
+        Some(Input::Param(name)) => format!("parameter {name}"),
         None => "?".to_owned(),
     }
+}
+
+fn input(plan: &Plan, id: InputId) -> String {
+    input_name(plan, id.index())
 }
 
 fn resource(plan: &Plan, id: ResourceId) -> String {

@@ -12,6 +12,7 @@ pub(crate) mod units;
 
 pub(crate) use describe::sharers;
 pub use dot::dot;
+pub(crate) use explain::input_name;
 pub use explain::{explain_json, explain_text};
 pub use json::json;
 pub use text::text;
