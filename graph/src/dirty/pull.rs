@@ -27,7 +27,7 @@ pub(super) struct Pull<'a> {
     open: Vec<u32>,
     needed: BTreeSet<u32>,
     /// By memory: resources that are written in this frame, and what is relied on.
-    written: HashMap<u32, Vec<ResourceId>>,
+    written: HashMap<u32, BTreeSet<ResourceId>>,
     relied: HashMap<u32, Vec<(ResourceId, Relied, Option<usize>)>>,
     /// Resources whose declared values have to be set again.
     fills: BTreeSet<ResourceId>,
@@ -183,11 +183,9 @@ impl<'a> Pull<'a> {
     /// A resource is written in this frame: whoever relied on other content of its bytes has it made again.
     fn write(&mut self, resource: ResourceId) {
         let Some(memory) = self.memory(resource) else { return };
-        let written = self.written.entry(memory).or_default();
-        if written.contains(&resource) {
+        if !self.written.entry(memory).or_default().insert(resource) {
             return;
         }
-        written.push(resource);
         let Some(mut relied) = self.relied.remove(&memory) else { return };
         let lost: Vec<_> = relied.iter().copied().filter(|(held, ..)| self.takes(resource, *held)).collect();
         relied.retain(|entry| !lost.contains(entry));

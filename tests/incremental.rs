@@ -1,0 +1,113 @@
+//! What runs after which change, for the pipelines that come with the program. No GPU takes part.
+#![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, missing_docs)]
+
+use std::path::Path;
+
+use luminaire::files::DiskFiles;
+use luminaire::graph::compile::CompileInput;
+use luminaire::graph::device::DeviceFacts;
+use luminaire::graph::harness::Harness;
+use luminaire::graph::plan::Input;
+use luminaire::graph::published::{SceneCounts, ViewKind};
+use luminaire::scenes::publish::schema;
+
+/// A pipeline, what the scene has, and what is asked for.
+struct Case<'a> {
+    pipeline: &'a str,
+    lights: u32,
+    sets: &'a [(&'a str, &'a str)],
+    outputs: &'a [&'a str],
+    size: [u32; 2],
+}
+
+impl Case<'_> {
+    fn compile<T>(&self, with: impl FnOnce(&CompileInput<'_>) -> T) -> T {
+        let counts: SceneCounts = schema().counts.into_iter().map(|name| (name, 1)).collect();
+        let counts = counts.into_iter().map(|(name, _)| {
+            let count = if name == "local_lights" || name == "point_lights" { self.lights } else { 1 };
+            (name, count)
+        });
+        let sets: Vec<(String, String)> = self.sets.iter().map(|(name, value)| ((*name).to_owned(), (*value).to_owned())).collect();
+        let outputs: Vec<String> = self.outputs.iter().map(|name| (*name).to_owned()).collect();
+        with(&CompileInput {
+            pipeline: self.pipeline,
+            files: &DiskFiles::for_pipeline(Path::new(self.pipeline)),
+            published: &schema(),
+            counts: &counts.collect(),
+            device: &DeviceFacts::webgpu_defaults(),
+            output: self.size,
+            sets: &sets,
+            outputs: Some(&outputs),
+        })
+    }
+}
+
+const PBR: Case<'_> = Case { pipeline: "pipelines/pbr.ron", lights: 2, sets: &[], outputs: &["color"], size: [64, 64] };
+
+/// After its first frame.
+fn settled(case: &Case<'_>) -> Harness {
+    let mut harness = case.compile(Harness::new).unwrap_or_else(|problems| panic!("{problems}"));
+    harness.frame();
+    assert!(harness.frame().is_empty(), "an unchanged frame runs nothing");
+    harness
+}
+
+#[test]
+fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
+    let mut harness = settled(&PBR);
+    let from_camera = |input: &Input| match input {
+        Input::Table(name) => name == "camera",
+        Input::View(view) => view.kind == ViewKind::Camera,
+        Input::Draws(_, view) => *view == ViewKind::Camera,
+        _ => false,
+    };
+    assert!(harness.change(from_camera) > 0);
+    assert_eq!(harness.frame(), ["gbuffer", "light", "compose", "transparent", "display"]);
+}
+
+#[test]
+fn a_light_that_moves_draws_its_own_six_faces() {
+    let mut harness = settled(&PBR);
+    harness.change_table("local_lights");
+    harness.change(|input| matches!(input, Input::View(view) if matches!(view.kind, ViewKind::LocalLight(1, _))));
+    let ran = harness.frame();
+    let faces = |light: u32| {
+        ran.iter().filter(|name| (0..6).any(|face| name.starts_with(&format!("local_shadows[{}].", 6 * light + face)))).count()
+    };
+    assert_eq!((faces(0), faces(1)), (0, 12), "opaque and masked surfaces of light 1 alone: {ran:?}");
+    assert!(!ran.iter().any(|name| name == "gbuffer"), "{ran:?}");
+}
+
+#[test]
+fn exposure_runs_tone_mapping_alone() {
+    let mut harness = settled(&PBR);
+    Case { sets: &[("exposure", "1.5")], ..PBR }.compile(|input| harness.replan(input)).unwrap();
+    assert_eq!(harness.frame(), ["display"]);
+    assert!(harness.explain(Some("display")).contains("it has not run as it is"));
+}
+
+#[test]
+fn a_resize_leaves_what_does_not_depend_on_the_size() {
+    let mut harness = settled(&PBR);
+    Case { size: [80, 48], ..PBR }.compile(|input| harness.replan(input)).unwrap();
+    let ran = harness.frame();
+    assert!(ran.iter().any(|name| name == "gbuffer"), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("local_shadows")), "{ran:?}");
+}
+
+#[test]
+fn another_output_runs_what_it_alone_needs() {
+    let mut harness = settled(&PBR);
+    Case { outputs: &["color", "normal"], ..PBR }.compile(|input| harness.replan(input)).unwrap();
+    let ran = harness.frame();
+    assert!(ran.iter().any(|name| name == "inspect"), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("local_shadows") || name == "display"), "{ran:?}");
+}
+
+#[test]
+fn a_lost_device_runs_everything() {
+    let mut harness = settled(&PBR);
+    let all: Vec<String> = harness.order().into_iter().map(str::to_owned).collect();
+    harness.lose_device();
+    assert_eq!(harness.frame(), all);
+}
