@@ -83,6 +83,7 @@ pub fn assemble(bound: Bound, schedule: Schedule, lifetimes: Lifetimes, allocati
         draw_lists,
         outputs,
         figures: allocation.figures,
+        flow: schedule.flow,
         requirements,
     };
     debug_assert_eq!(plan.self_check(), Vec::<String>::new());

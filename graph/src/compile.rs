@@ -9,7 +9,7 @@ use crate::bind::{BindInput, bind};
 use crate::device::DeviceFacts;
 use crate::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use crate::expand::{ExpandInput, expand};
-use crate::lifetime::lifetimes;
+use crate::lifetime::{lifetimes, retained};
 use crate::plan::Plan;
 use crate::published::{PublishedSchema, SceneCounts};
 use crate::schedule::schedule;
@@ -79,10 +79,11 @@ fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<D
     let expanded = expand(&validated, &expand_input)?;
     let bind_input = BindInput { files: input.files, published: input.published, device: input.device, output: input.output };
     let bound = bind(expanded, &bind_input, sources)?;
-    let (scheduled, problems) = schedule(&bound);
+    let retained = retained(&bound);
+    let (scheduled, problems) = schedule(&bound, &retained);
     let Some(schedule) = scheduled.filter(|_| !has_errors(&problems)) else { return Err(problems) };
     warnings.extend(problems);
-    let lifetimes = lifetimes(&bound, &schedule);
+    let lifetimes = lifetimes(&bound, &schedule, retained);
     let allocation = allocate(&bound, &schedule, &lifetimes, input.device)?;
     Ok(assemble(bound, schedule, lifetimes, allocation, input.pipeline, input.output))
 }

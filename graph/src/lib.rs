@@ -19,6 +19,8 @@ pub mod expand;
 pub mod expression;
 pub mod format;
 pub mod lifetime;
+mod lists;
+pub mod place;
 pub mod plan;
 pub mod published;
 pub mod reflect;

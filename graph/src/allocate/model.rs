@@ -6,8 +6,8 @@ use super::extent::{charged_bytes, format_of};
 use crate::bind::types::Bound;
 use crate::expand::types::{ResourceId, Shape, TextureShape};
 use crate::format::Format;
-use crate::lifetime::{Touches, retained};
-use crate::plan::{Access, Step};
+use crate::lifetime::Touches;
+use crate::plan::{Access, Retained, Step};
 
 /// Everything of a texture's descriptor but usage and name: equal keys can share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -44,8 +44,8 @@ pub(crate) enum Pool {
 }
 
 /// The tables.
-#[derive(Debug)]
-pub(crate) struct Model {
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Model {
     /// By resource.
     pub(crate) pools: Vec<Pool>,
     /// By resource; saturated where they do not fit.
@@ -62,7 +62,7 @@ pub(crate) struct Model {
 
 impl Model {
     /// Reads a pipeline. `alive` tells for each pass whether it runs.
-    pub(crate) fn new(bound: &Bound, alive: impl Fn(usize) -> bool) -> Model {
+    pub(crate) fn new(bound: &Bound, retained: &[Option<Retained>], alive: impl Fn(usize) -> bool) -> Model {
         // Looked up and never walked, so its order does not matter.
         let mut known: HashMap<Descriptor, u32> = HashMap::new();
         let mut descriptors = Vec::new();
@@ -87,7 +87,7 @@ impl Model {
             others.sort_unstable();
             others.dedup();
         }
-        Model { pools, charged, retained: retained(bound), descriptors, conflicts, touches: Touches::new(bound) }
+        Model { pools, charged, retained: retained.iter().map(Option::is_some).collect(), descriptors, conflicts, touches: Touches::new(bound) }
     }
 
     /// Whether a resource takes part in sharing.

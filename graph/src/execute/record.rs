@@ -157,6 +157,7 @@ mod tests {
             draw_lists: Vec::new(),
             outputs: Vec::new(),
             figures: MemoryFigures::default(),
+            flow: Default::default(),
             requirements: Vec::new(),
         }
     }
