@@ -1,8 +1,8 @@
 //! A two-dimensional packing of time and bytes.
 //!
 //! In descending order of size each item takes the tightest hole between its neighbours in time, see [`Strip`]. While the heap is
-//! larger than the peak of live bytes, a few further packings start with the items that stood above the peak, in the order of
-//! those that overshot longest; the smallest heap stays.
+//! larger than the peak of live bytes and items are few, further packings start with those that stood above the peak; the smallest
+//! heap stays.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -10,12 +10,10 @@ use std::ops::Range;
 use crate::allocate::strip::Strip;
 use crate::schedule::flow::Flow;
 
-/// Items times further packings.
-const EFFORT: usize = 20_000;
-/// Further packings of few items.
-const MOST_REPACKS: usize = 32;
-/// Further packings of many items.
-const FEWEST_REPACKS: usize = 1;
+/// Items times further packings. Many items fill each other's holes, and are packed once.
+const EFFORT: usize = 400;
+/// Further packings of the fewest items.
+const MOST_REPACKS: usize = 16;
 
 /// First byte of each item.
 pub(crate) struct Packed {
@@ -32,7 +30,7 @@ pub(crate) fn pack(flow: &Flow, bytes: &[u64], units: &[u64], order: &[u32], bou
         (Reverse(bytes[*item as usize]), Reverse(range.len()), range.start, *item)
     });
     let mut best = pack_in(&sequence, bytes, units, &ranges, order.len());
-    let repacks = (EFFORT / bytes.len().max(1)).clamp(FEWEST_REPACKS, MOST_REPACKS);
+    let repacks = (EFFORT / bytes.len().max(1)).min(MOST_REPACKS);
     let mut offsets = best.offsets.clone();
     for _ in 0..repacks {
         if best.bytes <= bound {

@@ -1,36 +1,33 @@
 //! In which order passes run.
 //!
 //! The declared order takes, of all passes that are ready, the one that stands first in the file. Besides it other orders are
-//! tried: depth first from the outputs, and sweeps ([`super::sweep`]) over both. The one with the fewest bytes that an executor
-//! would really allocate wins; on a tie the declared order does, so the chosen order is never worse than it. Finding the best
-//! order is NP-hard, so none of this promises it.
+//! tried: two sweeps over it ([`super::sweep`]), and for few passes depth first from the outputs, swept or not. The one with the
+//! fewest bytes that an executor would really allocate wins; on a tie the declared order does, so the chosen order is never worse
+//! than it. Finding the best order is NP-hard, so none of this promises it.
 
 use super::flow::Flow;
 use super::sweep::sink_and_hoist;
 use crate::allocate::bytes_reached;
 use crate::allocate::model::Model;
 
+/// So many passes are tried depth first, too: with more of them that order hardly ever wins.
+const FEW: usize = 256;
+
 /// The order with the fewest bytes.
 pub(crate) fn chosen(flow: &Flow, model: &Model) -> Vec<u32> {
     let mut best = (bytes_reached(flow, model, &flow.declared), flow.declared.clone());
-    let debug = std::env::var_os("DEBUG_ORDER").is_some();
-    let mut consider = |what: &str, candidate: Vec<u32>| {
+    let mut consider = |candidate: Vec<u32>| {
         let bytes = bytes_reached(flow, model, &candidate);
-        if debug {
-            eprintln!("{what} {:.3} peak {:.3}", bytes as f64 / best.0 as f64, flow.peak(&candidate, &flow.bytes) as f64 / flow.peak(&flow.declared, &flow.bytes) as f64);
-        }
         if bytes < best.0 {
             best = (bytes, candidate);
         }
     };
-    let swept = sink_and_hoist(flow, &flow.bytes, &flow.declared);
-    if debug {
-    consider("again", sink_and_hoist(flow, &flow.bytes, &swept));
-    let deep = depth_first(flow);
-    consider("deep", deep.clone());
-    consider("deep swept", sink_and_hoist(flow, &flow.bytes, &deep));
+    consider(sink_and_hoist(flow, &flow.bytes, &flow.declared));
+    if flow.passes.len() <= FEW {
+        let deep = depth_first(flow);
+        consider(sink_and_hoist(flow, &flow.bytes, &deep));
+        consider(deep);
     }
-    consider("swept", swept);
     best.1
 }
 
