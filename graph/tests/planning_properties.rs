@@ -11,7 +11,8 @@ use luminaire_graph::bind::types::Bound;
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::dump;
 use luminaire_graph::expand::types::PassId;
-use luminaire_graph::lifetime::lifetimes;
+use luminaire_graph::lifetime::{lifetimes, retained};
+use luminaire_graph::place::Alignment;
 use luminaire_graph::plan::Role;
 use luminaire_graph::schedule::Schedule;
 use proptest::prelude::*;
@@ -232,18 +233,23 @@ proptest! {
         check_order(&fixture.bound, &schedule.declared)?;
 
         let figures = allocation.figures;
-        prop_assert!(figures.bound <= figures.placed, "{:?}", figures);
         prop_assert!(figures.bound <= figures.reached, "{:?}", figures);
         prop_assert!(figures.reached <= figures.without_sharing, "{:?}", figures);
 
         // The chosen order is never worse than the declared one.
         let declared = Schedule { order: schedule.declared.clone(), ..schedule.clone() };
-        let same = allocate(&fixture.bound, &declared, &lifetimes(&fixture.bound, &declared), &device()).unwrap();
+        let same = allocate(&fixture.bound, &declared, &lifetimes(&fixture.bound, &declared, retained(&fixture.bound)), &device()).unwrap();
         prop_assert!(figures.reached <= same.figures.reached);
         prop_assert_eq!(figures.declared_bound, same.figures.bound);
 
         let plan = assemble(fixture.bound.clone(), schedule.clone(), spans, allocation, "test.graph", [64, 64]);
         prop_assert_eq!(plan.self_check(), Vec::<String>::new());
+        let placed = plan.placed();
+        check_order(&fixture.bound, &placed.order)?;
+        prop_assert_eq!(plan.check_placed(&placed, Alignment::default()), Vec::<String>::new());
+        prop_assert!(placed.bound <= placed.declared_bound);
+        let tight = Alignment { texture: 256, buffer: 512 };
+        prop_assert_eq!(plan.check_placed(&schedule.placed(tight), tight), Vec::<String>::new());
         let alive: BTreeSet<usize> = schedule.order.iter().map(|pass| pass.index()).collect();
         prop_assert_eq!(&alive, &needed(&fixture.bound, &plan));
         prop_assert_eq!(alive.len() + schedule.culled.len(), fixture.bound.steps.len());

@@ -44,9 +44,11 @@ impl Ours {
 
     /// Bytes of all memories that hold no output, textures and arenas in whole units.
     pub fn allocated(&self, declared: &Declared) -> u64 {
-        let transient = self.allocation.memories.iter().filter(|memory| {
-            !memory.holders.iter().any(|holder| declared.outputs.contains(&declared.resources[holder.index()].name))
-        });
+        let transient = self
+            .allocation
+            .memories
+            .iter()
+            .filter(|memory| !memory.holders.iter().any(|holder| declared.outputs.contains(&declared.resources[holder.index()].name)));
         transient
             .map(|memory| match memory.kind {
                 MemoryKind::Texture(..) => memory.holders.first().map_or(0, |holder| declared.resources[holder.index()].bytes),

@@ -20,9 +20,9 @@ use crate::expand::types::{Dimension, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Usage};
 use crate::schedule::Schedule;
+use crate::schedule::flow::Flow;
 use extent::{format_of, resource_bytes};
 use model::{Model, Pool};
-use crate::schedule::flow::Flow;
 
 /// Where everything lives. All lists but `memories` are by resource id.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,7 +87,8 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
             holders: slot.holders.iter().map(|resource| ResourceId(*resource)).collect(),
         });
     }
-    let buffers = (0..resources.len()).filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty());
+    let buffers = (0..resources.len())
+        .filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty());
     let buffers = buffers.map(|index| (index as u32, ranges[index].clone()));
     for mut arena in arenas::pack(model, buffers, arenas::ARENA_LIMIT.min(device.max_buffer_bytes)) {
         let memory = MemoryId(memories.len() as u32);

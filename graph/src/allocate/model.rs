@@ -87,7 +87,14 @@ impl Model {
             others.sort_unstable();
             others.dedup();
         }
-        Model { pools, charged, retained: retained.iter().map(Option::is_some).collect(), descriptors, conflicts, touches: Touches::new(bound) }
+        Model {
+            pools,
+            charged,
+            retained: retained.iter().map(Option::is_some).collect(),
+            descriptors,
+            conflicts,
+            touches: Touches::new(bound),
+        }
     }
 
     /// Whether a resource takes part in sharing.

@@ -24,7 +24,7 @@ use crate::schedule::sweep::sink_and_hoist;
 pub struct Alignment {
     /// Textures: what drivers ask of them in heaps, 64 KiB.
     pub texture: u64,
-    /// Buffers: WebGPU's default for bindings, 256.
+    /// Buffers: WebGPU's default for bindings, 256, of which it is a multiple.
     pub buffer: u64,
 }
 

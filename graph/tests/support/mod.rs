@@ -17,7 +17,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, render};
 use luminaire_graph::expand::types::*;
 use luminaire_graph::format::Format;
-use luminaire_graph::lifetime::{Lifetimes, lifetimes};
+use luminaire_graph::lifetime::{Lifetimes, lifetimes, retained};
 use luminaire_graph::plan::{Access, Plan, Role, Step, StepKind, Use};
 use luminaire_graph::schedule::{Schedule, schedule};
 use luminaire_graph::source::{FileId, SourceMap, Span};
@@ -245,19 +245,19 @@ pub struct Planned {
 impl Fixture {
     /// The schedule; panics on an error.
     pub fn schedule(&self) -> Schedule {
-        let (schedule, problems) = schedule(&self.bound);
+        let (schedule, problems) = schedule(&self.bound, &retained(&self.bound));
         schedule.unwrap_or_else(|| panic!("{}", render(&problems, &self.sources, false)))
     }
 
     /// The problems of scheduling, as text.
     pub fn problems(&self) -> String {
-        render(&schedule(&self.bound).1, &self.sources, false)
+        render(&schedule(&self.bound, &retained(&self.bound)).1, &self.sources, false)
     }
 
     /// Plans on a device.
     pub fn planned_on(&self, device: &DeviceFacts) -> Result<Planned, Vec<Diagnostic>> {
         let schedule = self.schedule();
-        let lifetimes = lifetimes(&self.bound, &schedule);
+        let lifetimes = lifetimes(&self.bound, &schedule, retained(&self.bound));
         let allocation = allocate(&self.bound, &schedule, &lifetimes, device)?;
         Ok(Planned { schedule, lifetimes, allocation })
     }
