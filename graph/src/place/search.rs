@@ -31,6 +31,9 @@ struct State {
     came_from: Option<(u32, u32)>,
 }
 
+/// Least peak, then most passes, then least live bytes, then the first found; and which state.
+type Ranked = (Reverse<u64>, u32, Reverse<u64>, Reverse<u32>);
+
 struct Search<'a> {
     flow: &'a Flow,
     bytes: &'a [u64],
@@ -61,7 +64,7 @@ impl<'a> Search<'a> {
         let all = u64::MAX >> (64 - self.flow.passes.len());
         // Looked up and never walked.
         let mut known: HashSet<u64> = HashSet::new();
-        let mut queue: BinaryHeap<(Reverse<u64>, u32, Reverse<u64>, Reverse<u32>)> = BinaryHeap::new();
+        let mut queue: BinaryHeap<Ranked> = BinaryHeap::new();
         self.states.push(State { done: 0, live: 0, peak: 0, came_from: None });
         queue.push((Reverse(0), 0, Reverse(0), Reverse(0)));
         while let Some((.., Reverse(index))) = queue.pop() {
