@@ -123,10 +123,13 @@ fn order(declared: &Declared, resolve: &dyn Fn(&[String]) -> Vec<usize>, outputs
     order
 }
 
+/// Format, extent, mips and layers.
+type Descriptor<'a> = (&'a str, [u32; 3], u32, u32);
+
 fn exact(declared: &Declared, wanted: &[(usize, Life)], places: &mut [Option<(usize, u64)>]) -> Vec<u64> {
     let mut memories = Vec::new();
     // By descriptor: memories with the last step of their users.
-    let mut pools: HashMap<(&str, [u32; 3], u32, u32), Vec<(usize, usize)>> = HashMap::new();
+    let mut pools: HashMap<Descriptor<'_>, Vec<(usize, usize)>> = HashMap::new();
     for (index, life) in wanted {
         let DeclaredResource { format, extent, mips, layers, bytes, .. } = &declared.resources[*index];
         let pool = pools.entry((format, *extent, *mips, *layers)).or_default();

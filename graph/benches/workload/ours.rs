@@ -26,13 +26,17 @@ pub struct Ours {
 
 /// From declarations to an order and memory.
 pub fn plan(declared: &Declared) -> Ours {
+    plan_of(&bound(declared))
+}
+
+/// From what binding makes to an order and memory.
+pub fn plan_of(bound: &Bound) -> Ours {
     let device = DeviceFacts { memory_budget: u64::MAX, ..DeviceFacts::webgpu_defaults() };
-    let bound = bound(declared);
-    let retained = retained(&bound);
-    let (schedule, problems) = schedule(&bound, &retained);
+    let retained = retained(bound);
+    let (schedule, problems) = schedule(bound, &retained);
     let schedule = schedule.unwrap_or_else(|| panic!("{:?}", problems.first()));
-    let lifetimes = lifetimes(&bound, &schedule, retained);
-    let allocation = allocate(&bound, &schedule, &lifetimes, &device).unwrap_or_else(|problems| panic!("{:?}", problems.first()));
+    let lifetimes = lifetimes(bound, &schedule, retained);
+    let allocation = allocate(bound, &schedule, &lifetimes, &device).unwrap_or_else(|problems| panic!("{:?}", problems.first()));
     Ours { schedule, allocation }
 }
 
