@@ -103,6 +103,7 @@ pub fn assemble(
         draw_lists,
         outputs,
         figures: allocation.figures,
+        flow: schedule.flow,
         requirements,
     };
     debug_assert_eq!(plan.self_check(), Vec::<String>::new());

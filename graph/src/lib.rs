@@ -21,6 +21,8 @@ pub mod expression;
 pub mod format;
 pub mod harness;
 pub mod lifetime;
+mod lists;
+pub mod place;
 pub mod plan;
 pub mod published;
 pub mod reflect;

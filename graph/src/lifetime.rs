@@ -6,6 +6,7 @@ use std::ops::Range;
 
 use crate::bind::types::Bound;
 use crate::expand::types::PassId;
+use crate::lists::Lists;
 use crate::plan::Retained;
 use crate::schedule::Schedule;
 
@@ -20,7 +21,7 @@ pub struct Lifetimes {
 
 /// Lifetimes in the chosen order, for what [`crate::dirty::retention()`] says.
 pub fn lifetimes(bound: &Bound, schedule: &Schedule, retained: Vec<Option<Retained>>) -> Lifetimes {
-    let mut ranges = Touches::new(bound).ranges(&schedule.order);
+    let mut ranges = schedule.model.touches.ranges(&schedule.order);
     // An output that nothing writes is cleared by a step that does not name it.
     let mut places = vec![None; bound.steps.len()];
     for (place, pass) in schedule.order.iter().enumerate() {
@@ -38,10 +39,9 @@ pub fn lifetimes(bound: &Bound, schedule: &Schedule, retained: Vec<Option<Retain
 }
 
 /// For each pass the resources that it touches, each once. Flat, since every candidate order walks all of it.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct Touches {
-    ends: Vec<u32>,
-    resources: Vec<u32>,
+    resources: Lists,
     resource_count: usize,
 }
 
@@ -49,7 +49,7 @@ impl Touches {
     /// Reads the uses of all steps.
     pub(crate) fn new(bound: &Bound) -> Touches {
         let resource_count = bound.expanded.resources.len();
-        let mut touches = Touches { ends: Vec::with_capacity(bound.steps.len()), resources: Vec::new(), resource_count };
+        let mut resources = Lists::with_capacity(bound.steps.len(), 4 * bound.steps.len());
         let mut seen_by = vec![u32::MAX; resource_count];
         for (pass, step) in bound.steps.iter().enumerate() {
             let declared = step.clears.iter().map(|(part, _)| part.resource);
@@ -57,19 +57,17 @@ impl Touches {
                 if let Some(seen) = seen_by.get_mut(resource.index())
                     && std::mem::replace(seen, pass as u32) != pass as u32
                 {
-                    touches.resources.push(resource.0);
+                    resources.push(resource.0);
                 }
             }
-            touches.ends.push(touches.resources.len() as u32);
+            resources.finish_list();
         }
-        touches
+        Touches { resources, resource_count }
     }
 
     /// What a pass touches.
     pub(crate) fn of(&self, pass: PassId) -> &[u32] {
-        let index = pass.index();
-        let start = index.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
-        &self.resources[start..self.ends[index] as usize]
+        self.resources.of(pass.index())
     }
 
     /// How many resources there are.

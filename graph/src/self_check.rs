@@ -8,6 +8,7 @@ use std::ops::Range;
 
 use crate::allocate::extent::{ARENA_ALIGNMENT, texture_bytes};
 use crate::expand::types::PassId;
+use crate::place::{Alignment, HeapPlan};
 use crate::plan::{Access, MemoryKind, Plan, PlannedShape, Role, Step, Use};
 
 impl Plan {
@@ -25,6 +26,12 @@ impl Plan {
             faults.extend(figures(self));
         }
         faults
+    }
+
+    /// The same for a placement of this plan's resources: an order that keeps producers, modifiers and readers apart, no byte in use
+    /// twice at a time, everything transient in the heap at its alignment, and the bound.
+    pub fn check_placed(&self, placed: &HeapPlan, alignment: Alignment) -> Vec<String> {
+        heap(self, placed, alignment)
     }
 }
 
@@ -265,8 +272,66 @@ fn figures(plan: &Plan) -> Vec<String> {
         faults.push(format!("figures are {found:?}, claimed {claimed:?}"));
     }
     let figures = &plan.figures;
-    if figures.bound > figures.placed || figures.bound > figures.reached || figures.reached > figures.without_sharing {
+    if figures.bound > figures.reached || figures.reached > figures.without_sharing {
         faults.push(format!("figures contradict each other: {figures:?}"));
+    }
+    faults
+}
+
+/// Every fault of a placement, from the plan's steps and shapes alone.
+fn heap(plan: &Plan, heap: &HeapPlan, alignment: Alignment) -> Vec<String> {
+    let place = |pass: &PassId| heap.order.iter().position(|other| other == pass);
+    let mut places: Vec<Option<usize>> = plan.steps.iter().map(|step| place(&step.pass)).collect();
+    places.sort_unstable();
+    if heap.order.len() != plan.steps.len() || places.iter().enumerate().any(|(index, place)| *place != Some(index)) {
+        return vec!["the placed order is not one of the steps".to_owned()];
+    }
+    let mut reordered = plan.clone();
+    reordered.steps.sort_by_key(|step| place(&step.pass));
+    // What is cleared is cleared by whatever step comes first.
+    let clears: Vec<_> = reordered.steps.iter_mut().flat_map(|step| std::mem::take(&mut step.clears)).collect();
+    for clear in clears {
+        let names = |step: &&mut Step| step.uses.iter().any(|used| used.resource == clear.0.resource);
+        let first = reordered.steps.iter_mut().find(names);
+        match first {
+            Some(step) => step.clears.push(clear),
+            None => reordered.steps.iter_mut().take(1).for_each(|step| step.clears.push(clear.clone())),
+        }
+    }
+    let mut faults = order(&reordered);
+
+    let mut spans: BTreeMap<u32, Range<usize>> = BTreeMap::new();
+    for (place, step) in reordered.steps.iter().enumerate() {
+        for used in step.uses.iter().filter(|used| plan.resources[used.resource.index()].retained.is_none()) {
+            spans.entry(used.resource.0).or_insert(place..place).end = place + 1;
+        }
+    }
+    let offsets: BTreeMap<u32, u64> = heap.offsets.iter().map(|(resource, offset)| (resource.0, *offset)).collect();
+    if offsets.len() != heap.offsets.len() || !offsets.keys().eq(spans.keys()) {
+        faults.push("what is placed is not what is transient".to_owned());
+        return faults;
+    }
+    let mut live = vec![0u64; plan.steps.len()];
+    let mut placed: Vec<(Range<usize>, Range<u64>)> = Vec::new();
+    for ((resource, span), offset) in spans.into_iter().zip(offsets.into_values()) {
+        let resource = &plan.resources[resource as usize];
+        let unit = if matches!(resource.shape, PlannedShape::Buffer(_)) { alignment.buffer } else { alignment.texture };
+        let bytes = resource.bytes.div_ceil(unit).saturating_mul(unit);
+        if offset % unit != 0 || offset.saturating_add(bytes) > heap.bytes {
+            faults.push(format!("`{}` does not fit at byte {offset} of {}", resource.name, heap.bytes));
+        }
+        live[span.clone()].iter_mut().for_each(|live| *live = live.saturating_add(bytes));
+        placed.push((span, offset..offset.saturating_add(bytes)));
+    }
+    for (index, (span, bytes)) in placed.iter().enumerate() {
+        let met = |other: &&(Range<usize>, Range<u64>)| {
+            other.0.start < span.end && span.start < other.0.end && other.1.start < bytes.end && bytes.start < other.1.end
+        };
+        faults.extend(placed[..index].iter().find(met).map(|other| format!("bytes {bytes:?} are in use twice: {span:?} and {other:?}")));
+    }
+    let bound = live.into_iter().max().unwrap_or(0);
+    if bound != heap.bound || bound > heap.bytes {
+        faults.push(format!("the bound is {bound}, claimed {} of {} bytes", heap.bound, heap.bytes));
     }
     faults
 }

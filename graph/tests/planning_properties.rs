@@ -12,6 +12,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::dump;
 use luminaire_graph::expand::types::PassId;
 use luminaire_graph::lifetime::lifetimes;
+use luminaire_graph::place::Alignment;
 use luminaire_graph::plan::Role;
 use luminaire_graph::schedule::Schedule;
 use proptest::prelude::*;
@@ -232,7 +233,6 @@ proptest! {
         check_order(&fixture.bound, &schedule.declared)?;
 
         let figures = allocation.figures;
-        prop_assert!(figures.bound <= figures.placed, "{:?}", figures);
         prop_assert!(figures.bound <= figures.reached, "{:?}", figures);
         prop_assert!(figures.reached <= figures.without_sharing, "{:?}", figures);
 
@@ -244,6 +244,12 @@ proptest! {
 
         let plan = assemble(fixture.bound.clone(), schedule.clone(), spans, allocation, Vec::new(), "test.graph", [64, 64]);
         prop_assert_eq!(plan.self_check(), Vec::<String>::new());
+        let placed = plan.placed();
+        check_order(&fixture.bound, &placed.order)?;
+        prop_assert_eq!(plan.check_placed(&placed, Alignment::default()), Vec::<String>::new());
+        prop_assert!(placed.bound <= placed.declared_bound);
+        let tight = Alignment { texture: 256, buffer: 512 };
+        prop_assert_eq!(plan.check_placed(&schedule.placed(tight), tight), Vec::<String>::new());
         let alive: BTreeSet<usize> = schedule.order.iter().map(|pass| pass.index()).collect();
         prop_assert_eq!(&alive, &needed(&fixture.bound, &plan));
         prop_assert_eq!(alive.len() + schedule.culled.len(), fixture.bound.steps.len());

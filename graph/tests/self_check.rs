@@ -3,6 +3,7 @@
 
 mod support;
 
+use luminaire_graph::place::{Alignment, HeapPlan};
 use luminaire_graph::plan::Plan;
 use support::fixture;
 
@@ -57,4 +58,24 @@ fn every_break_is_found() {
     breaks("a usage that the memory lacks", |plan| plan.memories[0].usage.sampled = false);
     breaks("a figure", |plan| plan.figures.reached += 1);
     breaks("a resource that does not exist", |plan| plan.steps[0].uses[0].resource.0 = 1000);
+}
+
+#[test]
+fn every_broken_placement_is_found() {
+    let plan = plan();
+    let sound = plan.placed();
+    assert_eq!(plan.check_placed(&sound, Alignment::default()), Vec::<String>::new());
+    let breaks = |what: &str, change: &dyn Fn(&mut HeapPlan)| {
+        let mut broken = sound.clone();
+        change(&mut broken);
+        assert!(!plan.check_placed(&broken, Alignment::default()).is_empty(), "{what} is not found");
+    };
+    breaks("a changed order", &|heap| heap.order.swap(0, 1));
+    breaks("a pass that is left out", &|heap| heap.order.truncate(1));
+    breaks("a pass that stands twice", &|heap| heap.order[0] = heap.order[1]);
+    breaks("a heap that is too small", &|heap| heap.bytes -= 1);
+    breaks("a bound", &|heap| heap.bound -= 1);
+    breaks("an offset that is not aligned", &|heap| heap.offsets[0].1 += 4);
+    breaks("a resource that is left out", &|heap| heap.offsets.truncate(1));
+    breaks("two resources in the same bytes", &|heap| heap.offsets.iter_mut().for_each(|(_, offset)| *offset = 0));
 }

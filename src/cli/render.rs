@@ -106,6 +106,7 @@ fn output_name(arguments: &RenderArguments) -> Result<String, Problems> {
 
 fn stats(session: &Session, frame: &FrameStats, arguments: &RenderArguments, elapsed: Duration) -> Value {
     let figures = session.plan.figures;
+    let placed = session.plan.placed();
     let passes: Vec<Value> = match &frame.times {
         Some(times) => times.iter().map(|time| json!({ "pass": time.name, "gpu_ms": time.milliseconds })).collect(),
         None => session.plan.steps.iter().map(|step| json!({ "pass": step.name, "gpu_ms": null })).collect(),
@@ -123,7 +124,8 @@ fn stats(session: &Session, frame: &FrameStats, arguments: &RenderArguments, ela
             "reached": figures.reached,
             "bound": figures.bound,
             "declared_bound": figures.declared_bound,
-            "placed": figures.placed,
+            "placed": placed.bytes,
+            "placed_bound": placed.bound,
             "retained": figures.retained,
         },
         "counts": {

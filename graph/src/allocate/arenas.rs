@@ -7,7 +7,8 @@
 
 use std::ops::Range;
 
-use super::model::{Model, Pool};
+use super::extent::ARENA_ALIGNMENT;
+use super::model::Model;
 use super::strip::{Fit, Strip};
 
 /// No arena grows beyond this (WebGPU's default for `maxBufferSize`), so that an order is judged the same on every device; a
@@ -29,20 +30,18 @@ impl Arena {
     }
 }
 
-/// Places all transient buffers that are in use. No arena grows beyond `limit` by sharing.
-pub(crate) fn pack(model: &Model, ranges: &[Range<usize>], limit: u64) -> Vec<Arena> {
-    let mut buffers: Vec<usize> = (0..ranges.len())
-        .filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty())
-        .collect();
-    buffers.sort_by_key(|index| (std::cmp::Reverse(model.charged[*index]), ranges[*index].start, *index));
-    let steps = buffers.iter().map(|index| ranges[*index].end).max().unwrap_or(0);
+/// Places buffers, given with when they are in use. No arena grows beyond `limit` by sharing.
+pub(crate) fn pack(model: &Model, buffers: impl Iterator<Item = (u32, Range<usize>)>, limit: u64) -> Vec<Arena> {
+    let mut buffers: Vec<(u32, Range<usize>)> = buffers.collect();
+    buffers.sort_unstable_by_key(|(index, range)| (std::cmp::Reverse(model.charged[*index as usize]), range.start, *index));
+    let steps = buffers.iter().map(|(_, range)| range.end).max().unwrap_or(0);
     let mut arenas: Vec<Arena> = Vec::new();
-    let mut home: Vec<Option<usize>> = vec![None; if model.conflicts.is_empty() { 0 } else { ranges.len() }];
+    let mut home: Vec<Option<usize>> = vec![None; if model.conflicts.is_empty() { 0 } else { model.pools.len() }];
     let mut forbidden: Vec<usize> = Vec::new();
-    for index in buffers {
-        let bytes = model.charged[index];
+    for (index, range) in buffers {
+        let bytes = model.charged[index as usize];
         forbidden.clear();
-        let rivals = model.conflicts.get(&(index as u32)).map_or(&[][..], Vec::as_slice);
+        let rivals = model.conflicts.get(&index).map_or(&[][..], Vec::as_slice);
         forbidden.extend(rivals.iter().filter_map(|rival| home[*rival as usize]));
         forbidden.sort_unstable();
         let mut best: Option<(usize, Fit)> = None;
@@ -50,7 +49,7 @@ pub(crate) fn pack(model: &Model, ranges: &[Range<usize>], limit: u64) -> Vec<Ar
             if forbidden.binary_search(&number).is_ok() {
                 continue;
             }
-            let fit = arena.strip.fit(&ranges[index], bytes);
+            let fit = arena.strip.fit(&range, bytes, ARENA_ALIGNMENT);
             let better = best.is_none_or(|(_, least)| (fit.growth, fit.waste) < (least.growth, least.waste));
             if better && fit.growth <= bytes && arena.bytes().saturating_add(fit.growth) <= limit {
                 best = Some((number, fit));
@@ -60,9 +59,9 @@ pub(crate) fn pack(model: &Model, ranges: &[Range<usize>], limit: u64) -> Vec<Ar
         if number == arenas.len() {
             arenas.push(Arena { holders: Vec::new(), strip: Strip::new(steps) });
         }
-        arenas[number].strip.insert(&ranges[index], offset, bytes);
-        arenas[number].holders.push((index as u32, offset));
-        if let Some(entry) = home.get_mut(index) {
+        arenas[number].strip.insert(&range, offset, bytes);
+        arenas[number].holders.push((index, offset));
+        if let Some(entry) = home.get_mut(index as usize) {
             *entry = Some(number);
         }
     }

@@ -10,20 +10,19 @@ pub(crate) mod figures;
 mod limits;
 pub(crate) mod model;
 mod refusals;
-mod strip;
+pub(crate) mod strip;
 pub(crate) mod textures;
-
-use std::ops::Range;
 
 use crate::bind::types::Bound;
 use crate::device::DeviceFacts;
 use crate::diagnostic::Diagnostic;
-use crate::expand::types::{Dimension, PassId, ResourceId, Shape};
+use crate::expand::types::{Dimension, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, StepKind, Usage};
 use crate::schedule::Schedule;
+use crate::schedule::flow::Flow;
 use extent::{format_of, resource_bytes};
-use model::Model;
+use model::{Model, Pool};
 
 /// Where everything lives. All lists but `memories` are by resource id.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,30 +43,29 @@ pub struct Allocation {
 
 /// Assigns memory to every resource that a scheduled pass uses. Fails, with all reasons, where a limit or the budget is exceeded.
 pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, device: &DeviceFacts) -> Result<Allocation, Vec<Diagnostic>> {
-    let mut runs = vec![false; bound.steps.len()];
-    for pass in &schedule.order {
-        runs[pass.index()] = true;
-    }
-    let model = Model::new(bound, &lifetimes.retained, |index| runs[index]);
     let usages = usages(bound, schedule);
     let problems = limits::resources(bound, lifetimes, &usages, device);
     if !problems.is_empty() {
         return Err(problems);
     }
-    let allocation = place(bound, schedule, lifetimes, &model, usages, device);
+    let allocation = place(bound, schedule, lifetimes, usages, device);
     match limits::budget(bound, &allocation, device) {
         Some(problem) => Err(vec![problem]),
         None => Ok(allocation),
     }
 }
 
-/// Bytes that the executor would allocate for transients, given when they are in use.
-pub(crate) fn bytes_reached(model: &Model, ranges: &[Range<usize>]) -> u64 {
-    let arenas = arenas::pack(model, ranges, arenas::ARENA_LIMIT);
-    arenas.iter().fold(textures::texture_bytes_reached(model, ranges), |sum, arena| sum.saturating_add(arena.bytes()))
+/// Bytes that the executor would allocate for transients in an order.
+pub(crate) fn bytes_reached(flow: &Flow, model: &Model, order: &[u32]) -> u64 {
+    let ranges = flow.ranges(order);
+    let buffers = flow.pools.iter().enumerate().filter(|(_, pool)| **pool == Pool::Buffer);
+    let buffers = buffers.map(|(item, _)| (flow.resources[item].0, ranges[item].clone()));
+    let arenas = arenas::pack(model, buffers, arenas::ARENA_LIMIT);
+    arenas.iter().fold(textures::bytes_reached(flow, model, order, &ranges), |sum, arena| sum.saturating_add(arena.bytes()))
 }
 
-fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, model: &Model, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
+fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
+    let model = &schedule.model;
     let resources = &bound.expanded.resources;
     let ranges = &lifetimes.ranges;
     let texture_kind = |index: usize| match (&resources[index].shape, format_of(bound, ResourceId(index as u32))) {
@@ -89,7 +87,10 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, model: &Mode
             holders: slot.holders.iter().map(|resource| ResourceId(*resource)).collect(),
         });
     }
-    for mut arena in arenas::pack(model, ranges, arenas::ARENA_LIMIT.min(device.max_buffer_bytes)) {
+    let buffers = (0..resources.len())
+        .filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty());
+    let buffers = buffers.map(|index| (index as u32, ranges[index].clone()));
+    for mut arena in arenas::pack(model, buffers, arenas::ARENA_LIMIT.min(device.max_buffer_bytes)) {
         let memory = MemoryId(memories.len() as u32);
         arena.holders.sort_by_key(|(resource, offset)| (ranges[*resource as usize].start, *offset, *resource));
         let mut usage = Usage::default();
@@ -111,8 +112,7 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, model: &Mode
         without_sharing: figures::without_sharing(model, ranges),
         reached: sum(&memories[..transient_memories]),
         bound: figures::peak(model, ranges),
-        declared_bound: figures::peak(model, &model.touches.ranges(&schedule.declared)),
-        placed: figures::placed(model, ranges),
+        declared_bound: schedule.flow.peak(&schedule.flow.declared, &schedule.flow.bytes),
         retained: sum(&memories[transient_memories..]),
     };
     let alone = refusals::refusals(model, lifetimes, &memories, &placements);
@@ -167,9 +167,4 @@ fn clear_usage(bound: &Bound, resource: ResourceId) -> Usage {
         _ => false,
     };
     Usage { attachment, copy_target: !attachment, ..Usage::default() }
-}
-
-/// When each transient is in use in an order.
-pub(crate) fn ranges_in(model: &Model, order: &[PassId]) -> Vec<Range<usize>> {
-    model.touches.ranges(order)
 }

@@ -44,8 +44,8 @@ pub(crate) enum Pool {
 }
 
 /// The tables.
-#[derive(Debug)]
-pub(crate) struct Model {
+#[derive(Debug, Clone, PartialEq, Default)]
+pub struct Model {
     /// By resource.
     pub(crate) pools: Vec<Pool>,
     /// By resource; saturated where they do not fit.

@@ -62,10 +62,11 @@ impl Strip {
         self.size
     }
 
-    /// The best place for `bytes` during `steps`.
-    pub(crate) fn fit(&mut self, steps: &Range<usize>, bytes: u64) -> Fit {
+    /// The best place for `bytes` during `steps`, at a multiple of `unit`.
+    pub(crate) fn fit(&mut self, steps: &Range<usize>, bytes: u64, unit: u64) -> Fit {
         self.gather(steps);
         self.neighbours.sort_unstable();
+        let aligned = |offset: u64| offset.checked_next_multiple_of(unit).unwrap_or(u64::MAX);
         let mut top = 0;
         let mut best: Option<(u64, u64)> = None;
         for (start, end) in self.neighbours.iter().copied() {
@@ -75,7 +76,7 @@ impl Strip {
                     best = Some((waste, top));
                 }
             }
-            top = top.max(end);
+            top = top.max(aligned(end));
         }
         match best {
             Some((waste, offset)) => Fit { offset, growth: 0, waste },
@@ -204,7 +205,7 @@ mod tests {
                 let start = below(steps as u64) as usize;
                 let end = start + 1 + below((steps - start) as u64) as usize;
                 let bytes = 1 + below(20);
-                let fit = strip.fit(&(start..end), bytes);
+                let fit = strip.fit(&(start..end), bytes, 1);
                 for (other, offset, size) in placed.iter().filter(|(other, ..)| other.start < end && start < other.end) {
                     assert!(*offset >= fit.offset + bytes || fit.offset >= offset + size, "{other:?} {start}..{end} of {steps}");
                 }

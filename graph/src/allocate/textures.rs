@@ -10,6 +10,7 @@ use std::ops::Range;
 
 use super::model::{Model, Pool};
 use crate::plan::Usage;
+use crate::schedule::flow::Flow;
 
 /// Transient textures that are in use, by first use and then by id.
 fn by_first_use(model: &Model, ranges: &[Range<usize>]) -> Vec<(u32, u32)> {
@@ -21,10 +22,24 @@ fn by_first_use(model: &Model, ranges: &[Range<usize>]) -> Vec<(u32, u32)> {
     found
 }
 
-/// Bytes of the textures that an order needs: the peak of each descriptor times its size. Cheap enough to try many orders.
-pub(crate) fn texture_bytes_reached(model: &Model, ranges: &[Range<usize>]) -> u64 {
-    let peaks = peaks(model, ranges);
-    peaks.iter().zip(&model.descriptors).fold(0, |sum, (peak, bytes)| sum.saturating_add(bytes.saturating_mul(peak.0 as u64)))
+/// Bytes of the textures that an order needs: the peak of each descriptor times its size.
+pub(crate) fn bytes_reached(flow: &Flow, model: &Model, order: &[u32], ranges: &[Range<usize>]) -> u64 {
+    let mut live = vec![0u32; model.descriptors.len()];
+    let mut peaks = vec![0u32; model.descriptors.len()];
+    for (step, node) in order.iter().enumerate() {
+        let textures = flow.touches.of(*node as usize).iter().filter_map(|item| match flow.pools[*item as usize] {
+            Pool::Texture(descriptor) => Some((&ranges[*item as usize], descriptor as usize)),
+            Pool::Buffer => None,
+        });
+        for (_, descriptor) in textures.clone().filter(|(range, _)| range.start == step) {
+            live[descriptor] += 1;
+            peaks[descriptor] = peaks[descriptor].max(live[descriptor]);
+        }
+        for (_, descriptor) in textures.filter(|(range, _)| range.end == step + 1) {
+            live[descriptor] -= 1;
+        }
+    }
+    peaks.iter().zip(&model.descriptors).fold(0, |sum, (peak, bytes)| sum.saturating_add(bytes.saturating_mul(u64::from(*peak))))
 }
 
 /// For each descriptor the largest number of its textures in use at once, and the first step at which they are.

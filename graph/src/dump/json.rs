@@ -28,6 +28,7 @@ pub fn json(plan: &Plan, sources: &SourceMap) -> Json {
         })
         .collect();
     let figures = &plan.figures;
+    let placed = plan.placed();
     json!({
         "pipeline": plan.name,
         "doc": plan.doc,
@@ -43,7 +44,8 @@ pub fn json(plan: &Plan, sources: &SourceMap) -> Json {
             "reached": figures.reached,
             "bound": figures.bound,
             "declared_bound": figures.declared_bound,
-            "placed": figures.placed,
+            "placed": placed.bytes,
+            "placed_bound": placed.bound,
             "retained": figures.retained,
         },
         "views": plan.views.iter().map(|view| json!({

@@ -115,6 +115,7 @@ fn inputs(plan: &Plan, out: &mut Writer) {
 
 fn figures(plan: &Plan, out: &mut Writer) {
     let figures = &plan.figures;
+    let placed = plan.placed();
     out.0.push('\n');
     out.line(0, "memory");
     for (what, bytes, meaning) in [
@@ -122,7 +123,8 @@ fn figures(plan: &Plan, out: &mut Writer) {
         ("reached", figures.reached, "what this plan allocates for transients"),
         ("bound", figures.bound, "the most bytes in use at once: no plan with this order takes less"),
         ("declared bound", figures.declared_bound, "the same for the order of the file"),
-        ("placed", figures.placed, "if resources could be placed by byte, in units of 64 KiB"),
+        ("placed", placed.bytes, "if resources could be placed by byte, in an order for that, textures in units of 64 KiB"),
+        ("placed bound", placed.bound, "the most bytes in use at once in that order"),
         ("retained", figures.retained, "outputs and what can be read without being made again: shares with nothing"),
         ("total", figures.reached.saturating_add(figures.retained), "reached and retained"),
     ] {

@@ -171,6 +171,7 @@ mod tests {
             draw_lists: Vec::new(),
             outputs: Vec::new(),
             figures: MemoryFigures::default(),
+            flow: Default::default(),
             requirements: Vec::new(),
         }
     }

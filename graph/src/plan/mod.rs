@@ -16,6 +16,7 @@ use crate::expand::types::{ClearValue, History, Param, PassId, ResourceId, Sprea
 use crate::format::Format;
 use crate::published::{DrawFilter, ViewKind, ViewRequest};
 use crate::reflect::interface::Shader;
+use crate::schedule::flow::Flow;
 use crate::source::Span;
 
 /// A compiled pipeline.
@@ -51,6 +52,8 @@ pub struct Plan {
     pub outputs: Vec<PlannedOutput>,
     /// What the memory comes to.
     pub figures: MemoryFigures,
+    /// What waits for what among the passes that run, for [`Plan::placed`].
+    pub flow: Flow,
     /// Features that the device must have, and which pass needs each.
     pub requirements: Vec<Requirement>,
 }
@@ -260,8 +263,6 @@ pub struct MemoryFigures {
     pub bound: u64,
     /// The same for the declared order.
     pub declared_bound: u64,
-    /// What they would take if they could be placed by byte in this order.
-    pub placed: u64,
     /// Resources that share with nothing.
     pub retained: u64,
 }

@@ -11,10 +11,11 @@ mod clears;
 mod cull;
 mod cycle;
 mod dag;
-mod greedy;
+pub(crate) mod flow;
 mod order;
 pub(crate) mod part;
 mod problems;
+pub(crate) mod sweep;
 mod versions;
 
 pub(crate) use versions::writes;
@@ -24,6 +25,7 @@ use crate::bind::types::Bound;
 use crate::diagnostic::{Diagnostic, has_errors};
 use crate::expand::types::{ClearValue, PassId};
 use crate::plan::{Culled, PartView, Retained};
+use flow::Flow;
 
 /// What runs, in order, and what does not.
 #[derive(Debug, Clone, PartialEq, Default)]
@@ -37,6 +39,10 @@ pub struct Schedule {
     /// Parts that nothing produces and that are used all the same, with the step before which they get their declared value.
     /// In the order of the steps.
     pub initial_clears: Vec<(PassId, PartView, ClearValue)>,
+    /// What waits for what among the passes that run.
+    pub flow: Flow,
+    /// What memory planning knows of the pipeline.
+    pub model: Model,
 }
 
 /// Schedules a bound pipeline, given why each resource outlives the frame, if it does. The schedule is there if none of the problems is an error.
@@ -56,9 +62,11 @@ pub fn schedule(bound: &Bound, retained: &[Option<Retained>]) -> (Option<Schedul
         return (None, found);
     }
     let model = Model::new(bound, retained, |pass| alive[pass]);
-    let orders = order::orders(&dag, &alive, &model);
+    let flow = Flow::new(&dag, &alive, &model);
+    let order = flow.passes_of(&order::chosen(&flow, &model));
     let culled = cull::culled(bound, &dag, &alive);
-    let initial_clears = clears::initial_clears(bound, &grids, &orders.chosen);
-    let schedule = Schedule { order: orders.chosen, declared: orders.declared, culled, initial_clears };
+    let initial_clears = clears::initial_clears(bound, &grids, &order);
+    let declared = flow.passes_of(&flow.declared);
+    let schedule = Schedule { order, declared, culled, initial_clears, flow, model };
     (Some(schedule), found)
 }

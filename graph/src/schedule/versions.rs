@@ -227,6 +227,8 @@ fn grid(bound: &Bound, resource: ResourceId, uses: &[UseRef], outputs: &[usize])
             return found;
         }
         if regions.len() < FEW {
+            // Mostly there is one, and room for four is large.
+            regions.reserve_exact(1);
             regions.push(Region::new(rect, version));
             return regions.len() - 1;
         }

@@ -63,6 +63,7 @@ impl Builder {
                 draw_lists: Vec::new(),
                 outputs: Vec::new(),
                 figures: MemoryFigures::default(),
+                flow: Default::default(),
                 requirements: Vec::new(),
             },
             schema: PublishedSchema::default(),
