@@ -6,6 +6,7 @@
 use std::collections::HashMap;
 
 use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::dirty::StepRun;
 use luminaire_graph::plan::{Binding, BindingTarget, BuiltinSampler, Plan, Step};
 use luminaire_graph::published::MaterialBinding;
 
@@ -40,6 +41,22 @@ pub(crate) struct StepGroups {
     pub(crate) step: Option<wgpu::BindGroup>,
     /// The bindings of group 1.
     material: Vec<Binding>,
+    /// The indices of the iterations that run, of a batched step.
+    batch: Option<wgpu::Buffer>,
+    /// Where the number of the run goes, of an accumulating step.
+    accumulated: Option<(wgpu::Buffer, u64)>,
+}
+
+impl StepGroups {
+    /// Brings in what changes from run to run.
+    pub(crate) fn update(&self, queue: &wgpu::Queue, run: &StepRun) {
+        if let Some(batch) = &self.batch {
+            queue.write_buffer(batch, 0, bytemuck::cast_slice(&run.iterations));
+        }
+        if let Some((params, offset)) = &self.accumulated {
+            queue.write_buffer(params, *offset, &run.accumulated.to_le_bytes());
+        }
+    }
 }
 
 /// An object that a binding holds while its bind group is made.
@@ -66,6 +83,12 @@ impl Held {
 }
 
 impl BindGroups {
+    /// For a new plan. Groups of materials hold nothing of a plan; `keep` tells whether the scene's objects are the same.
+    pub(crate) fn successor(&self, keep: bool) -> BindGroups {
+        let materials = if keep { self.materials.clone() } else { HashMap::new() };
+        BindGroups { samplers: self.samplers.clone(), materials, created: self.created }
+    }
+
     /// How many bind groups were created.
     pub(crate) fn created(&self) -> u64 {
         self.created
@@ -93,10 +116,25 @@ impl BindGroups {
             return Err(subject.error("execute::group", format!("the variable `{}` is in the wrong group", wrong.variable)));
         }
         let ids = [&fixed, &material].map(|group| (!group.is_empty()).then(|| layouts.group(&gpu.device, group)));
-        let mut group = None;
+        let (mut group, mut batch, mut accumulated) = (None, None, None);
         if let Some(id) = ids[0] {
             let mut held = Vec::with_capacity(fixed.len());
             for binding in &fixed {
+                match &binding.target {
+                    BindingTarget::Batch => {
+                        let buffer = batch_buffer(gpu, step.batch.len());
+                        held.push((binding.binding, Held::whole(&buffer)));
+                        batch = Some(buffer);
+                        continue;
+                    }
+                    BindingTarget::Params { bytes, accumulated: Some(offset) } => {
+                        let buffer = params_buffer(gpu, bytes);
+                        held.push((binding.binding, Held::whole(&buffer)));
+                        accumulated = Some((buffer, *offset as u64));
+                        continue;
+                    }
+                    _ => {}
+                }
                 let object = self.object(gpu, plan, binding, memories, scene).ok_or_else(|| {
                     subject.error("execute::unbound", format!("there is nothing to bind to the variable `{}`", binding.variable))
                 })?;
@@ -104,7 +142,7 @@ impl BindGroups {
             }
             group = Some(self.create(gpu, layouts.get(id), &step.name, &held));
         }
-        Ok(StepGroups { layouts: ids, step: group, material: material.into_iter().cloned().collect() })
+        Ok(StepGroups { layouts: ids, step: group, material: material.into_iter().cloned().collect(), batch, accumulated })
     }
 
     /// The group of a material for a step; `None` if the step binds nothing of materials. Runs in the caller's error scope.
@@ -158,7 +196,8 @@ impl BindGroups {
         match &binding.target {
             BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => scene.table(name).map(Held::whole),
             BindingTarget::View(index) => scene.view(*index).map(Held::whole),
-            BindingTarget::TableRow(..) | BindingTarget::Batch => None,
+            BindingTarget::TableRow(table, row) => scene.row(table, *row).map(Held::whole),
+            BindingTarget::Batch => None,
             BindingTarget::Params { bytes, .. } => Some(Held::whole(&params_buffer(gpu, bytes))),
             BindingTarget::Sampler(sampler) => {
                 let made = self.samplers.entry(*sampler).or_insert_with(|| samplers::builtin(&gpu.device, *sampler));
@@ -173,6 +212,15 @@ impl BindGroups {
 
 fn is_material(binding: &Binding) -> bool {
     matches!(binding.target, BindingTarget::MaterialTexture(_) | BindingTarget::MaterialSampler(_))
+}
+
+fn batch_buffer(gpu: &Gpu, iterations: usize) -> wgpu::Buffer {
+    gpu.device.create_buffer(&wgpu::BufferDescriptor {
+        label: Some("batch"),
+        size: 4 * iterations.max(1) as u64,
+        usage: wgpu::BufferUsages::STORAGE | wgpu::BufferUsages::COPY_DST,
+        mapped_at_creation: false,
+    })
 }
 
 fn params_buffer(gpu: &Gpu, bytes: &[u8]) -> wgpu::Buffer {

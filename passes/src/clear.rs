@@ -47,7 +47,7 @@ struct Fill {
 }
 
 /// The filled buffers made so far, by texel, width and height.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Fills {
     made: HashMap<(Vec<u8>, u32, u32), Fill>,
 }

@@ -103,6 +103,7 @@ pub(crate) fn buffer_usages(usage: Usage) -> wgpu::BufferUsages {
         (usage.uniform, wgpu::BufferUsages::UNIFORM),
         (usage.copy_source, wgpu::BufferUsages::COPY_SRC),
         (usage.copy_target, wgpu::BufferUsages::COPY_DST),
+        (usage.indirect, wgpu::BufferUsages::INDIRECT),
     ];
     flags.into_iter().filter(|(used, _)| *used).map(|(_, flag)| flag).collect()
 }

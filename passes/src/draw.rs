@@ -82,6 +82,11 @@ impl DrawStep {
         Ok(())
     }
 
+    /// What changes from run to run.
+    pub(crate) fn groups(&self) -> &StepGroups {
+        &self.groups
+    }
+
     pub(crate) fn encode(
         &self,
         encoder: &mut wgpu::CommandEncoder,

@@ -1,13 +1,16 @@
 //! A plan and a scene on a device: prepared once, rendered frame after frame.
 //!
-//! Guarantees: everything is checked and created by [`Executor::new`]; a frame creates nothing but its command buffer; the
-//! same plan and scene give the same images. After an error the executor may be dropped or, unless the device was lost, used
+//! Guarantees: everything is checked and created by [`Executor::new`]; a frame runs what the changes reach, and creates nothing but
+//! its command buffer (a declared value that is set for the first time apart); the same plan and scene give the same images. After an error the executor may be dropped or, unless the device was lost, used
 //! on.
 
 use std::sync::Arc;
 
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
+use luminaire_graph::dirty::{Frame, Tracker};
+use luminaire_graph::dump;
 use luminaire_graph::execute::{self, Backend};
+use luminaire_graph::expand::types::Run;
 use luminaire_graph::plan::{PartView, Plan, PlannedShape, StepKind};
 use luminaire_graph::published::{PublishedScene, PublishedSchema};
 
@@ -15,6 +18,7 @@ use crate::backend::WgpuBackend;
 use crate::check;
 use crate::device::Gpu;
 use crate::readback::{self, ReadImage};
+use crate::revisions::Revisions;
 use crate::scene_data::{Changed, SceneData};
 use crate::store::Store;
 use crate::timing::{FrameCounts, StepTime, Timing};
@@ -24,6 +28,11 @@ use crate::timing::{FrameCounts, StepTime, Timing};
 pub struct Executor {
     plan: Arc<Plan>,
     backend: WgpuBackend,
+    tracker: Tracker,
+    revisions: Revisions,
+    /// By input of the plan.
+    now: Vec<u64>,
+    last: Frame,
 }
 
 /// What a frame did and cost.
@@ -38,6 +47,10 @@ pub struct FrameStats {
     pub pipelines_created: u64,
     /// Bind groups created since the executor was.
     pub bind_groups_created: u64,
+    /// Everything created since the executor was: memories, views, pipelines, bind groups, and what the scene takes.
+    pub created: u64,
+    /// Nothing ran: the outputs are what they will be until something changes.
+    pub settled: bool,
 }
 
 impl Executor {
@@ -53,12 +66,42 @@ impl Executor {
         }
         let data = SceneData::new(gpu, &plan, schema, scene)?;
         let timing = Timing::new(gpu, plan.steps.len()).map_err(|problem| vec![problem])?;
+        let tracker = Tracker::new(Arc::clone(&plan));
         let mut backend = WgpuBackend::new(Store::new(gpu.clone(), schema.clone(), data), timing);
-        let prepared = execute::prepare(&plan, &mut backend);
+        let prepared = execute::prepare(&plan, &[], &mut backend);
         // A lost device may raise errors everywhere; the loss explains them.
         gpu.check_alive().map_err(|problem| vec![problem])?;
         prepared?;
-        Ok(Executor { plan, backend })
+        let mut revisions = Revisions::default();
+        let now = revisions.update(&plan, schema, &PublishedScene::default(), &backend.store.scene.scene);
+        Ok(Executor { plan, backend, tracker, revisions, now, last: Frame::default() })
+    }
+
+    /// Turns to another plan on the same device: after a resize, a parameter, an edited file, another output. What is the same
+    /// stays held, and pipelines that did not change are not built again. After an error the old plan goes on.
+    pub fn adopt(&mut self, plan: Arc<Plan>, scene: Arc<PublishedScene>) -> Result<(), Vec<Diagnostic>> {
+        let Store { gpu, schema, scene: data, .. } = &self.backend.store;
+        let (gpu, schema) = (gpu.clone(), schema.clone());
+        let problems = check::check(&plan, &scene, gpu.facts());
+        if !problems.is_empty() {
+            return Err(problems);
+        }
+        let before = Arc::clone(&data.scene);
+        let (data, changed) = data.successor(&gpu, &plan, &schema, scene)?;
+        let timing =
+            Timing::new(&gpu, if self.backend.timing.is_some() { plan.steps.len() } else { 0 }).map_err(|problem| vec![problem])?;
+        let mut tracker = self.tracker.clone();
+        let adoption = tracker.adopt(Arc::clone(&plan));
+        let mut backend = self.backend.successor(&self.plan, &adoption, data, !changed.bound, timing);
+        let prepared = execute::prepare(&plan, &adoption.memories, &mut backend);
+        if let Err(problems) = gpu.check_alive().map_err(|problem| vec![problem]).and(prepared) {
+            // The new scene was written over the old one.
+            self.backend.store.scene.forget();
+            return Err(problems);
+        }
+        self.now = self.revisions.update(&plan, &schema, &before, &backend.store.scene.scene);
+        (self.plan, self.backend, self.tracker, self.last) = (plan, backend, tracker, Frame::default());
+        Ok(())
     }
 
     /// The plan that it runs.
@@ -72,7 +115,11 @@ impl Executor {
     /// for.
     pub fn update_scene(&mut self, scene: Arc<PublishedScene>) -> Result<(), Vec<Diagnostic>> {
         let Store { gpu, schema, scene: data, bind_groups, .. } = &mut self.backend.store;
+        let before = Arc::clone(&data.scene);
         let changed = data.update(gpu, &self.plan, schema, scene)?;
+        if !Arc::ptr_eq(&before, &data.scene) {
+            self.now = self.revisions.update(&self.plan, schema, &before, &data.scene);
+        }
         if changed.bound {
             bind_groups.forget_materials();
         }
@@ -89,10 +136,24 @@ impl Executor {
         if problems.is_empty() { Ok(()) } else { Err(problems) }
     }
 
-    /// Runs every step once.
+    /// Runs what the changes since the last frame reach. Where nothing changed nothing is submitted. A frame that fails is decided
+    /// again by the next call.
     pub fn render_frame(&mut self) -> Result<FrameStats, Vec<Diagnostic>> {
         self.backend.begin_frame();
-        execute::execute(&self.plan, &mut self.backend).map_err(|problem| vec![problem])?;
+        let frame = self.tracker.frame(&self.now);
+        match execute::execute(&self.plan, &frame, &mut self.backend) {
+            Ok(()) => self.tracker.commit(&frame, &self.now),
+            Err(problem) => {
+                if self.backend.store.gpu.check_alive().is_err() {
+                    self.tracker.lose();
+                } else {
+                    self.tracker.fail(&frame);
+                }
+                return Err(vec![problem]);
+            }
+        }
+        let empty = frame.is_empty();
+        self.last = frame;
         let times = match &self.backend.timing {
             Some(timing) => Some(timing.read(&self.backend.store.gpu).map_err(|problem| vec![problem])?),
             None => None,
@@ -100,10 +161,27 @@ impl Executor {
         let named = |(step, milliseconds): (usize, f64)| StepTime { name: self.plan.steps[step].name.clone(), milliseconds };
         Ok(FrameStats {
             counts: self.backend.counts,
+            settled: empty,
+            created: self.backend.store.created(),
             times: times.map(|times| times.into_iter().map(named).collect()),
             pipelines_created: self.backend.store.pipelines.created(),
             bind_groups_created: self.backend.store.bind_groups.created(),
         })
+    }
+
+    /// Why each pass ran in the last frame or did not; see `luminaire explain`.
+    pub fn explain(&self, pass: Option<&str>) -> String {
+        dump::explain_text(&self.tracker, &self.last, pass)
+    }
+
+    /// The passes that ran in the last frame, in order.
+    pub fn ran(&self) -> Vec<&str> {
+        self.last.runs.iter().map(|run| self.plan.steps[run.step].name.as_str()).collect()
+    }
+
+    /// Whether some pass runs in every frame, so that it never settles.
+    pub fn never_settles(&self) -> bool {
+        self.plan.steps.iter().any(|step| step.run == Run::EveryFrame)
     }
 
     /// Waits until the GPU has done all frames.

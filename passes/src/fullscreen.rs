@@ -61,6 +61,11 @@ impl FullscreenStep {
         Ok(FullscreenStep { pipeline, groups, attachments })
     }
 
+    /// What changes from run to run.
+    pub(crate) fn groups(&self) -> &StepGroups {
+        &self.groups
+    }
+
     pub(crate) fn encode(&self, encoder: &mut wgpu::CommandEncoder, stamps: Option<Stamps<'_>>, counts: &mut FrameCounts) {
         let mut pass = self.attachments.begin(encoder, stamps);
         pass.set_pipeline(&self.pipeline);

@@ -17,7 +17,7 @@ pub(crate) struct LayoutId(usize);
 pub(crate) type GroupLayouts = [Option<LayoutId>; 2];
 
 /// Every layout made so far.
-#[derive(Debug, Default)]
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Layouts {
     ids: HashMap<Vec<wgpu::BindGroupLayoutEntry>, LayoutId>,
     groups: Vec<wgpu::BindGroupLayout>,

@@ -21,6 +21,8 @@ mod fullscreen;
 mod layouts;
 mod pipelines;
 pub mod readback;
+mod remember;
+mod revisions;
 mod samplers;
 mod scene_check;
 mod scene_data;

@@ -4,6 +4,7 @@
 //! that equal keys mean equal pipelines.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
 use luminaire_graph::format::Format;
@@ -28,7 +29,7 @@ pub(crate) enum VertexStage {
 /// Everything that a render pipeline is made from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct RenderKey {
-    shader: Option<usize>,
+    shader: Option<ShaderText>,
     constants: Vec<(String, u64)>,
     layouts: GroupLayouts,
     vertex: VertexStage,
@@ -43,7 +44,7 @@ pub(crate) struct RenderKey {
 /// Everything that a compute pipeline is made from.
 #[derive(Debug, Clone, PartialEq, Eq, Hash)]
 pub(crate) struct ComputeKey {
-    shader: Option<usize>,
+    shader: Option<ShaderText>,
     constants: Vec<(String, u64)>,
     layouts: GroupLayouts,
     entry: String,
@@ -59,7 +60,7 @@ impl RenderKey {
         targets: &Targets,
     ) -> RenderKey {
         RenderKey {
-            shader: step.shader,
+            shader: ShaderText::of(plan, step),
             constants: constants(plan, step),
             layouts,
             vertex,
@@ -83,14 +84,36 @@ impl RenderKey {
 
 impl ComputeKey {
     pub(crate) fn new(plan: &Plan, step: &Step, layouts: GroupLayouts, entry: &str) -> ComputeKey {
-        ComputeKey { shader: step.shader, constants: constants(plan, step), layouts, entry: entry.to_owned() }
+        ComputeKey { shader: ShaderText::of(plan, step), constants: constants(plan, step), layouts, entry: entry.to_owned() }
     }
 }
 
-/// Every module and pipeline made so far.
-#[derive(Debug, Default)]
+/// The text of a shader: an edit makes another pipeline, and nothing else does. Equal places in memory are compared first.
+#[derive(Debug, Clone, Eq)]
+struct ShaderText(Arc<str>);
+
+impl ShaderText {
+    fn of(plan: &Plan, step: &Step) -> Option<ShaderText> {
+        step.shader.and_then(|index| plan.shaders.get(index)).map(|shader| ShaderText(Arc::clone(&shader.text)))
+    }
+}
+
+impl PartialEq for ShaderText {
+    fn eq(&self, other: &ShaderText) -> bool {
+        Arc::ptr_eq(&self.0, &other.0) || self.0 == other.0
+    }
+}
+
+impl std::hash::Hash for ShaderText {
+    fn hash<H: std::hash::Hasher>(&self, state: &mut H) {
+        self.0.hash(state);
+    }
+}
+
+/// Every module and pipeline made so far; one set serves all plans of an executor.
+#[derive(Debug, Default, Clone)]
 pub(crate) struct Pipelines {
-    modules: HashMap<usize, wgpu::ShaderModule>,
+    modules: HashMap<ShaderText, wgpu::ShaderModule>,
     fullscreen: Option<wgpu::ShaderModule>,
     render: HashMap<RenderKey, wgpu::RenderPipeline>,
     compute: HashMap<ComputeKey, wgpu::ComputePipeline>,
@@ -115,7 +138,7 @@ impl Pipelines {
         if let Some(pipeline) = self.render.get(key) {
             return Ok(pipeline.clone());
         }
-        let module = self.module(device, plan, subject, key.shader)?;
+        let module = self.module(device, plan, subject, key.shader.as_ref())?;
         let constants: Vec<(&str, f64)> = constant_refs(&key.constants);
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         let attributes = match &key.vertex {
@@ -184,7 +207,7 @@ impl Pipelines {
         if let Some(pipeline) = self.compute.get(key) {
             return Ok(pipeline.clone());
         }
-        let module = self.module(device, plan, subject, key.shader)?;
+        let module = self.module(device, plan, subject, key.shader.as_ref())?;
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
             label: Some(&subject.what),
             layout: Some(&layouts.pipeline(device, key.layouts)),
@@ -202,13 +225,13 @@ impl Pipelines {
         device: &wgpu::Device,
         plan: &Plan,
         subject: &Subject,
-        shader: Option<usize>,
+        text: Option<&ShaderText>,
     ) -> Result<wgpu::ShaderModule, Diagnostic> {
-        let found = shader.and_then(|index| plan.shaders.get(index).map(|shader| (index, shader)));
-        let Some((index, shader)) = found else {
+        let found = text.and_then(|text| Some((text, plan.shaders.iter().find(|shader| shader.text == text.0)?)));
+        let Some((text, shader)) = found else {
             return Err(subject.error("execute::no-shader", "it has no shader"));
         };
-        let module = self.modules.entry(index).or_insert_with(|| {
+        let module = self.modules.entry(text.clone()).or_insert_with(|| {
             device.create_shader_module(wgpu::ShaderModuleDescriptor {
                 label: Some(&shader.path),
                 source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned((*shader.module).clone())),

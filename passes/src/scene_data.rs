@@ -5,7 +5,7 @@
 //!
 //! Accepted downside: a table that changes its length often makes bind groups anew often; scenes should pad such tables.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 use luminaire_graph::diagnostic::Diagnostic;
@@ -25,6 +25,8 @@ const UPLOAD_BATCH: usize = 64 << 20;
 pub(crate) struct Needs {
     /// Tables by name, and how they bind.
     pub(crate) tables: BTreeMap<String, TableKind>,
+    /// Rows that are bound by themselves.
+    pub(crate) rows: BTreeSet<(String, u32)>,
     /// Some step binds a view.
     pub(crate) views: bool,
     /// Some step draws.
@@ -46,6 +48,9 @@ impl Needs {
                     BindingTarget::StorageTable(name) => {
                         needs.tables.insert(name.clone(), TableKind::Storage);
                     }
+                    BindingTarget::TableRow(table, row) => {
+                        needs.rows.insert((table.clone(), *row));
+                    }
                     BindingTarget::View(_) => needs.views = true,
                     BindingTarget::MaterialTexture(_) | BindingTarget::MaterialSampler(_) => needs.materials = true,
                     _ => {}
@@ -66,11 +71,13 @@ pub(crate) struct Changed {
 }
 
 /// The scene that stands on the device.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct SceneData {
     pub(crate) scene: Arc<PublishedScene>,
     needs: Needs,
     tables: BTreeMap<String, wgpu::Buffer>,
+    rows: BTreeMap<(String, u32), wgpu::Buffer>,
+    created: u64,
     views: Vec<wgpu::Buffer>,
     vertices: Option<wgpu::Buffer>,
     indices: Option<wgpu::Buffer>,
@@ -85,6 +92,8 @@ impl SceneData {
             scene: Arc::default(),
             needs: Needs::of(plan),
             tables: BTreeMap::new(),
+            rows: BTreeMap::new(),
+            created: 0,
             views: Vec::new(),
             vertices: None,
             indices: None,
@@ -106,6 +115,29 @@ impl SceneData {
         if Arc::ptr_eq(&self.scene, &scene) {
             return Ok(Changed::default());
         }
+        self.take(gpu, plan, schema, scene)
+    }
+
+    /// For another plan: what stands is kept, and what the plan needs in addition is created.
+    pub(crate) fn successor(
+        &self,
+        gpu: &Gpu,
+        plan: &Plan,
+        schema: &PublishedSchema,
+        scene: Arc<PublishedScene>,
+    ) -> Result<(SceneData, Changed), Vec<Diagnostic>> {
+        let mut next = self.clone();
+        next.needs = Needs::of(plan);
+        let changed = next.take(gpu, plan, schema, scene)?;
+        Ok((next, changed))
+    }
+
+    /// Forgets what stands on the device, so that the next scene is written anew.
+    pub(crate) fn forget(&mut self) {
+        self.scene = Arc::default();
+    }
+
+    fn take(&mut self, gpu: &Gpu, plan: &Plan, schema: &PublishedSchema, scene: Arc<PublishedScene>) -> Result<Changed, Vec<Diagnostic>> {
         let problems = scene_check::check(plan, schema, &self.needs, &scene, &gpu.device.limits());
         if !problems.is_empty() {
             return Err(problems);
@@ -113,12 +145,23 @@ impl SceneData {
         let (changed, errors) = catch(&gpu.device, || self.upload(gpu, schema, &scene));
         Subject::nowhere("uploading the scene").check(&errors).map_err(|problem| vec![problem])?;
         self.scene = scene;
+        self.created += u64::from(changed.bound);
         Ok(changed)
     }
 
     /// A table's buffer.
     pub(crate) fn table(&self, name: &str) -> Option<&wgpu::Buffer> {
         self.tables.get(name)
+    }
+
+    /// The buffer of a table's row.
+    pub(crate) fn row(&self, table: &str, row: u32) -> Option<&wgpu::Buffer> {
+        self.rows.get(&(table.to_owned(), row))
+    }
+
+    /// How many buffers, textures and samplers were created.
+    pub(crate) fn created(&self) -> u64 {
+        self.created
     }
 
     /// The buffer of a view's table.
@@ -151,6 +194,19 @@ impl SceneData {
             let mut slot = self.tables.remove(name);
             changed.bound |= put(gpu, &mut slot, name, old.tables.get(name).map(Vec::as_slice), bytes, u64::from(stride), usage);
             self.tables.extend(slot.map(|buffer| (name.clone(), buffer)));
+        }
+        for (name, row) in &self.needs.rows {
+            let stride = schema.tables.get(name).map_or(0, |table| table.stride as usize);
+            let bytes_of = |scene: &PublishedScene| {
+                // A row that the scene has no more is zero.
+                let start = stride * *row as usize;
+                scene.tables.get(name).and_then(|bytes| bytes.get(start..start + stride)).map_or_else(|| vec![0; stride], <[u8]>::to_vec)
+            };
+            let (before, after) = (bytes_of(&old), bytes_of(new));
+            let mut slot = self.rows.remove(&(name.clone(), *row));
+            let known = (!old.tables.is_empty()).then_some(before.as_slice());
+            changed.bound |= put(gpu, &mut slot, name, known, &after, stride as u64, wgpu::BufferUsages::UNIFORM);
+            self.rows.extend(slot.map(|buffer| ((name.clone(), *row), buffer)));
         }
         if self.needs.views {
             changed.bound |= self.views.len() != new.views.len();

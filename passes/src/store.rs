@@ -1,7 +1,7 @@
 //! Everything that preparation makes and steps share.
 
 use luminaire_graph::diagnostic::Diagnostic;
-use luminaire_graph::plan::{Plan, Step, Targets};
+use luminaire_graph::plan::{MemoryId, Plan, Step, Targets};
 use luminaire_graph::published::{MaterialBinding, PublishedSchema};
 
 use crate::bind_groups::{BindGroups, StepGroups};
@@ -39,6 +39,25 @@ impl Store {
             bind_groups: BindGroups::default(),
             fills: Fills::default(),
         }
+    }
+
+    /// For a new plan: pipelines, layouts and fills serve on, and memories that it takes over.
+    pub(crate) fn successor(&self, taken: &[Option<MemoryId>], scene: SceneData, same_scene: bool) -> Store {
+        Store {
+            gpu: self.gpu.clone(),
+            schema: self.schema.clone(),
+            scene,
+            memories: self.memories.successor(taken),
+            layouts: self.layouts.clone(),
+            pipelines: self.pipelines.clone(),
+            bind_groups: self.bind_groups.successor(same_scene),
+            fills: self.fills.clone(),
+        }
+    }
+
+    /// Everything created so far: memories, views, pipelines, bind groups, and what the scene takes.
+    pub(crate) fn created(&self) -> u64 {
+        self.memories.created() + self.pipelines.created() + self.bind_groups.created() + self.scene.created()
     }
 
     /// What a step binds. Runs in the caller's error scope, like all that follow.

@@ -17,7 +17,7 @@ use crate::device::Gpu;
 use crate::errors::{Subject, catch};
 
 /// A memory on the device.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 enum GpuMemory {
     Texture(wgpu::Texture),
     Arena(wgpu::Buffer),
@@ -26,7 +26,8 @@ enum GpuMemory {
 /// All memories of a plan, by [`MemoryId`], and the views made so far.
 #[derive(Debug, Default)]
 pub(crate) struct Memories {
-    memories: Vec<GpuMemory>,
+    memories: Vec<Option<GpuMemory>>,
+    created: u64,
     views: HashMap<(MemoryId, Range<u32>, Range<u32>, ViewDimension), wgpu::TextureView>,
 }
 
@@ -39,7 +40,25 @@ pub(crate) struct BufferRange {
 }
 
 impl Memories {
-    /// Creates the next memory; `memory` is its id.
+    /// For a new plan: what it takes over stands, everything else is to be created.
+    pub(crate) fn successor(&self, taken: &[Option<MemoryId>]) -> Memories {
+        let mut next = Memories { created: self.created, ..Memories::default() };
+        let old = |id: &MemoryId| self.memories.get(id.index()).cloned().flatten();
+        next.memories = taken.iter().map(|id| id.as_ref().and_then(old)).collect();
+        for ((memory, mips, layers, dimension), view) in &self.views {
+            if let Some(new) = taken.iter().position(|id| id.as_ref() == Some(memory)) {
+                next.views.insert((MemoryId(new as u32), mips.clone(), layers.clone(), *dimension), view.clone());
+            }
+        }
+        next
+    }
+
+    /// How many textures, buffers and views were created.
+    pub(crate) fn created(&self) -> u64 {
+        self.created
+    }
+
+    /// Creates a memory.
     pub(crate) fn create(&mut self, gpu: &Gpu, plan: &Plan, memory: MemoryId) -> Result<(), Diagnostic> {
         let planned = &plan.memories[memory.index()];
         let label = holder_names(plan, planned);
@@ -61,7 +80,11 @@ impl Memories {
                 mapped_at_creation: false,
             })),
         });
-        self.memories.push(created);
+        if self.memories.len() <= memory.index() {
+            self.memories.resize(memory.index() + 1, None);
+        }
+        self.memories[memory.index()] = Some(created);
+        self.created += 1;
         let span = planned.holders.first().map_or_else(Default::default, |holder| plan.resources[holder.index()].span);
         Subject { what: format!("resource {label}"), span, label: "lives in this memory" }.check(&errors)
     }
@@ -69,7 +92,7 @@ impl Memories {
     /// The texture behind a resource, with its shape; `None` for buffers and resources that live nowhere.
     pub(crate) fn texture<'a>(&'a self, plan: &'a Plan, resource: ResourceId) -> Option<(&'a wgpu::Texture, &'a TextureShape, Format)> {
         let PlannedShape::Texture(shape, format) = &plan.resources[resource.index()].shape else { return None };
-        match self.memories.get(placement(plan, resource)?.memory.index())? {
+        match self.memories.get(placement(plan, resource)?.memory.index())?.as_ref()? {
             GpuMemory::Texture(texture) => Some((texture, shape, *format)),
             GpuMemory::Arena(_) => None,
         }
@@ -79,7 +102,7 @@ impl Memories {
     pub(crate) fn buffer(&self, plan: &Plan, resource: ResourceId) -> Option<BufferRange> {
         let PlannedShape::Buffer(size) = plan.resources[resource.index()].shape else { return None };
         let Placement { memory, offset } = placement(plan, resource)?;
-        match self.memories.get(memory.index())? {
+        match self.memories.get(memory.index())?.as_ref()? {
             GpuMemory::Arena(buffer) => Some(BufferRange { buffer: buffer.clone(), offset, size }),
             GpuMemory::Texture(_) => None,
         }
@@ -102,6 +125,7 @@ impl Memories {
             array_layer_count: Some(part.layers.end.saturating_sub(part.layers.start)),
             ..wgpu::TextureViewDescriptor::default()
         });
+        self.created += 1;
         self.views.insert(key, view.clone());
         Some(view)
     }
@@ -122,8 +146,15 @@ fn placement(plan: &Plan, resource: ResourceId) -> Option<Placement> {
     plan.resources[resource.index()].placement
 }
 
-/// Whether a step clears one of the memory's holders.
+/// Whether one of the memory's holders is filled with a value at some time.
 fn is_cleared(plan: &Plan, memory: &Memory) -> bool {
+    let declares = |holder: &ResourceId| {
+        let resource = &plan.resources[holder.index()];
+        resource.clear.is_some() || resource.history.is_some()
+    };
+    if memory.holders.iter().any(declares) {
+        return true;
+    }
     plan.steps.iter().any(|step| {
         let target = match &step.kind {
             StepKind::Clear { target, .. } => Some(target.resource),
@@ -134,7 +165,7 @@ fn is_cleared(plan: &Plan, memory: &Memory) -> bool {
 }
 
 fn is_copied_to(plan: &Plan, memory: &Memory) -> bool {
-    plan.steps.iter().any(|step| matches!(&step.kind, StepKind::Copy { target, .. } if memory.holders.contains(&target.resource)))
+    plan.steps.iter().any(|step| matches!(&step.kind, StepKind::Copy { target, .. } | StepKind::Remember { target, .. } if memory.holders.contains(&target.resource)))
 }
 
 fn is_output(plan: &Plan, memory: &Memory) -> bool {

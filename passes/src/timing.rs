@@ -24,6 +24,8 @@ pub struct FrameCounts {
     pub dispatches: u64,
     /// Steps that ran.
     pub steps: u64,
+    /// Command buffers handed to the device.
+    pub submissions: u64,
 }
 
 /// The GPU time of a step.

@@ -18,7 +18,7 @@ use crate::plan::{InputId, Role, Step, Use};
 use crate::schedule::part::{Rect, merged};
 
 /// Lists of numbers, one after the other in one allocation.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Lists {
     ends: Vec<u32>,
     items: Vec<u32>,
@@ -60,7 +60,7 @@ pub(super) struct Node {
 }
 
 /// A part that somebody reads or shows.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Source {
     pub(super) resource: ResourceId,
     /// The nodes that left the value.
@@ -74,7 +74,7 @@ pub(super) struct Source {
 }
 
 /// What one unit leaves in one resource.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(super) struct Piece {
     pub(super) unit: u32,
     pub(super) resource: ResourceId,
@@ -82,7 +82,7 @@ pub(super) struct Piece {
 }
 
 /// All of it.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Flow {
     pub(super) nodes: Vec<Node>,
     /// First node of each step.

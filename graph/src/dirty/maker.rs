@@ -10,7 +10,7 @@ use crate::plan::{BindingTarget, Input, InputId, PartView, Plan, Step, StepKind,
 use crate::source::Span;
 
 /// Texts by number. One table serves all plans of a tracker.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Names {
     known: HashMap<String, u32>,
 }

@@ -12,7 +12,7 @@ use crate::plan::{Input, PartView, Plan, PlannedShape, Step};
 use crate::schedule::part::Rect;
 
 /// Where content is. Only [`Tracker::commit`], [`Tracker::fail`], [`Tracker::lose`] and [`Tracker::adopt`] change it.
-#[derive(Debug, Default)]
+#[derive(Debug, Clone, Default)]
 pub(super) struct Held {
     /// By piece.
     pub(super) pieces: Vec<bool>,
@@ -34,7 +34,7 @@ pub(super) struct Turn {
 }
 
 /// Decides what runs. Knows one plan at a time.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub struct Tracker {
     pub(super) plan: Arc<Plan>,
     pub(super) flow: Flow,

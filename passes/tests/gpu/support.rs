@@ -111,6 +111,7 @@ impl Builder {
             retained: None,
             alone: None,
             clear: None,
+            retained_for: Vec::new(),
             history: None,
         });
         let view = PartView { resource: id, mips: 0..1, layers: 0..layers, dimension: ViewDimension::D2 };
