@@ -1,5 +1,5 @@
 //! What documents come to once loops are unrolled and values are known, as text beside each fixture.
-#![allow(clippy::expect_used, clippy::panic, reason = "helpers of tests")]
+#![allow(dead_code, clippy::expect_used, clippy::panic, reason = "helpers of tests")]
 
 #[path = "support/fixture_files.rs"]
 mod support;

@@ -4,6 +4,7 @@
 //! declared value until it is written. A cycle through the past needs a pass that runs though nothing else has changed, and
 //! an end that is chosen by the author.
 
+use std::collections::btree_map::Entry;
 use std::collections::{BTreeMap, BTreeSet, VecDeque};
 
 use petgraph::algo::tarjan_scc;
@@ -163,8 +164,8 @@ fn round(graph: &DiGraph<(), ()>, start: NodeIndex, component: &[NodeIndex]) -> 
                 way.reverse();
                 return way;
             }
-            if !reached.contains_key(&next) {
-                reached.insert(next, node);
+            if let Entry::Vacant(entry) = reached.entry(next) {
+                entry.insert(node);
                 queue.push_back(next);
             }
         }
