@@ -167,7 +167,8 @@ impl<'a> Builder<'a> {
             match &binding.target {
                 BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => {
                     let per_draw = self.input.published.tables.get(name).is_some_and(|table| table.per_draw);
-                    if !(draws && per_draw) && !batched(name) {
+                    let elsewhere = (draws && per_draw) || batched(name);
+                    if !elsewhere {
                         found.push(Input::Table(name.clone()));
                     }
                 }

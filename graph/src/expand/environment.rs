@@ -82,6 +82,15 @@ impl Environment<'_> {
         }
     }
 
+    /// A number of MiB, as bytes.
+    pub fn mebibytes(&mut self, expr: &PlacedExpr) -> Option<u64> {
+        let what = "`retained_budget`";
+        match self.number(expr, what)? {
+            mebibytes if mebibytes >= 0.0 => Some((mebibytes * f64::from(1u32 << 20)) as u64),
+            mebibytes => self.bad(what, format!("it is {mebibytes}, below zero"), expr.span),
+        }
+    }
+
     /// A truth value.
     pub fn truth(&mut self, expr: &PlacedExpr, what: &str) -> Option<bool> {
         match self.value(expr, what)? {

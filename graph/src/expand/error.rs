@@ -31,6 +31,14 @@ pub enum ExpandError {
     AmbiguousPass { path: String, count: usize, span: Span },
     #[error("`{path}` does not stand in this scene or with these parameters, and its value is read")]
     AbsentPass { path: String, span: Span },
+    #[error("resource `{name}` can't be `keep: Never`: {why}")]
+    MustBeKept { name: String, why: &'static str, span: Span },
+    #[error("`{resource}` is written by `{pass}`, which does not run in every frame, and by `{other}`")]
+    SharedWithAmortised { resource: String, pass: String, other: String, span: Span, other_span: Span },
+    #[error("`{resource}` has no declared value, and `{pass}` needs one before it has run")]
+    NoValueBefore { resource: String, pass: String, span: Span, declared: Span },
+    #[error("the cycle {cycle} would never settle: each pass in it runs because the one before has run")]
+    NeverSettles { cycle: String, span: Span, pass: Span },
 }
 
 impl From<ExpandError> for Diagnostic {
@@ -66,6 +74,21 @@ impl From<ExpandError> for Diagnostic {
             ExpandError::AmbiguousPass { span, .. } => {
                 Diagnostic::error("expand::ambiguous-pass", message).at(span, "this name").hint("name one iteration: `loop[3].pass`")
             }
+            ExpandError::MustBeKept { span, .. } => {
+                Diagnostic::error("expand::must-be-kept", message).at(span, "here").hint("leave `keep` out: it can't be made again")
+            }
+            ExpandError::SharedWithAmortised { span, other_span, .. } => Diagnostic::error("expand::shared-with-amortised", message)
+                .at(span, "written here")
+                .and(other_span, "and by this pass")
+                .hint("what accumulates or is spread over frames is written by nobody else: give each a resource of its own"),
+            ExpandError::NoValueBefore { span, declared, .. } => Diagnostic::error("expand::no-value-before", message)
+                .at(span, "written here")
+                .and(declared, "declared here")
+                .hint("add `clear: Zero`, or what it shall hold at first"),
+            ExpandError::NeverSettles { span, pass, .. } => Diagnostic::error("expand::never-settles", message)
+                .at(span, "the past is read here")
+                .and(pass, "by this pass, on change")
+                .hint("say when one of them runs: `run: Accumulate(n)` ends after n frames, `run: EveryFrame` never"),
             ExpandError::AbsentPass { span, .. } => Diagnostic::error("expand::absent-pass", message)
                 .at(span, "this name")
                 .hint("give the reader the same `when` or `has`, or read the final value"),

@@ -5,10 +5,14 @@
 
 mod environment;
 mod error;
+mod histories;
+mod loops;
 mod params;
 mod passes;
 mod resources;
+mod rules;
 pub mod types;
+mod writers;
 
 pub use error::ExpandError;
 pub use passes::MAX_PASSES;
@@ -43,13 +47,15 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     let params = params::values(&validated.params, input.sets, &mut problems);
     let mut environment =
         Environment { params, indices: Vec::new(), output: input.output, counts: input.counts, problems, reported: HashSet::new() };
-    let resources: Vec<_> =
+    let mut resources: Vec<_> =
         validated.resources.iter().filter_map(|decl| resources::resource(&mut environment, decl, input.device)).collect();
     // Parts can only be checked against resources that are all there.
     if resources.len() < validated.resources.len() {
         return Err(environment.problems);
     }
-    let passes = passes::passes(&mut environment, &validated.items, &resources);
+    histories::resources(&validated.histories, &validated.resources, &mut resources);
+    let (mut passes, spreads) = passes::passes(&mut environment, &validated.items, &resources);
+    histories::passes(&validated.histories, &resources, &mut passes);
     let mut outputs = Vec::new();
     for (name, part) in &validated.outputs {
         if input.outputs.is_none_or(|asked| asked.contains(&name.value))
@@ -64,12 +70,15 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
             environment.report(ExpandError::UnknownOutput { name: asked.clone(), known });
         }
     }
+    let retained_budget = validated.retained_budget.as_ref().and_then(|budget| environment.mebibytes(budget));
+    if !has_errors(&environment.problems) {
+        rules::check(&mut environment, validated, &resources, &passes);
+    }
     let Environment { params, problems, .. } = environment;
     if has_errors(&problems) {
         Err(problems)
     } else {
         let offered = validated.outputs.iter().map(|(_, part)| part.resource).collect();
-        let (spreads, retained_budget) = (Vec::new(), None);
         Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, spreads, retained_budget, outputs, offered })
     }
 }

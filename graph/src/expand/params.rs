@@ -33,7 +33,7 @@ pub(super) fn values(params: &[ParamDecl], sets: &[(String, String)], problems: 
             span: param.name.span,
             value: value_of(param, problems),
             options: param.options.clone(),
-            live: false,
+            live: param.live,
         })
         .collect()
 }

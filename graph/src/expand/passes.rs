@@ -6,19 +6,21 @@ use std::collections::HashMap;
 
 use super::environment::Environment;
 use super::error::ExpandError;
-use super::types::{Indices, Located, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Value, Work};
+use super::types::{Element, Indices, Located, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Spread, Value, Work};
 use crate::published::ViewKind;
-use crate::validate::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
+use crate::validate::types::{Condition, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, View, WorkDecl};
 use crate::validate::without_indices;
 
 /// Pipelines longer than this are refused.
 pub const MAX_PASSES: usize = 100_000;
 
 /// Unrolls everything.
-pub(super) fn passes(environment: &mut Environment<'_>, items: &[Item], resources: &[Resource]) -> Vec<Pass> {
-    let mut unroller = Unroller { environment, resources, passes: Vec::new(), pending: Vec::new(), full: false };
+pub(super) fn passes(environment: &mut Environment<'_>, items: &[Item], resources: &[Resource]) -> (Vec<Pass>, Vec<Spread>) {
+    let (passes, pending, spreads, elements) = Default::default();
+    let mut unroller = Unroller { environment, resources, passes, pending, spreads, elements, iteration: None, count: 0, full: false };
     unroller.items(items, "");
-    unroller.resolve()
+    let spreads = std::mem::take(&mut unroller.spreads);
+    (unroller.resolve(), spreads)
 }
 
 /// References to passes that are resolved once all names are known.
@@ -28,16 +30,23 @@ struct Pending {
     versions: Vec<(usize, Located<String>)>,
 }
 
-struct Unroller<'a, 'b> {
-    environment: &'a mut Environment<'b>,
-    resources: &'a [Resource],
-    passes: Vec<Pass>,
+pub(super) struct Unroller<'a, 'b> {
+    pub environment: &'a mut Environment<'b>,
+    pub resources: &'a [Resource],
+    pub passes: Vec<Pass>,
     pending: Vec<Pending>,
-    full: bool,
+    pub spreads: Vec<Spread>,
+    /// Elements of the loops around, outermost first.
+    pub elements: Vec<Element>,
+    /// The iteration of a loop around that spreads over frames.
+    pub iteration: Option<Run>,
+    /// Passes and iterations of batches so far.
+    pub count: usize,
+    pub full: bool,
 }
 
 impl Unroller<'_, '_> {
-    fn items(&mut self, items: &[Item], scope: &str) {
+    pub(super) fn items(&mut self, items: &[Item], scope: &str) {
         for item in items {
             if self.full {
                 return;
@@ -49,7 +58,7 @@ impl Unroller<'_, '_> {
         }
     }
 
-    fn stands(&mut self, condition: &Condition, name: &str) -> bool {
+    pub(super) fn stands(&mut self, condition: &Condition, name: &str) -> bool {
         let has = condition.has.as_ref().is_none_or(|count| self.environment.counts.get(count).is_some_and(|count| *count > 0));
         let when = match &condition.when {
             None => true,
@@ -58,30 +67,14 @@ impl Unroller<'_, '_> {
         has && when
     }
 
-    fn repeat(&mut self, decl: &RepeatDecl, scope: &str) {
-        let name = decl.name.value.as_str();
-        if !self.stands(&decl.condition, name) {
-            return;
+    /// Adds to the length of the pipeline; false if it is too long.
+    pub(super) fn grow(&mut self, by: usize, name: &Located<String>) -> bool {
+        self.count = self.count.saturating_add(by);
+        if self.count > MAX_PASSES && !self.full {
+            self.full = true;
+            self.environment.report(ExpandError::TooManyPasses { name: name.value.clone(), limit: MAX_PASSES, span: name.span });
         }
-        let count = match &decl.each {
-            Each::Face => 6,
-            Each::Count(count) => match self.environment.count(count, &format!("the count of `{name}`")) {
-                Some(count) => count,
-                None => return,
-            },
-        };
-        for index in 0..count.min(MAX_PASSES as u64 + 1) {
-            self.environment.indices.push((decl.variable.clone(), index as u32));
-            self.items(&decl.items, &format!("{scope}{name}[{index}]."));
-            self.environment.indices.pop();
-            if self.passes.len() > MAX_PASSES && !self.full {
-                self.full = true;
-                self.environment.report(ExpandError::TooManyPasses { name: name.to_owned(), limit: MAX_PASSES, span: decl.name.span });
-            }
-            if self.full {
-                return;
-            }
-        }
+        !self.full
     }
 
     fn pass(&mut self, decl: &PassDecl, scope: &str) {
@@ -89,29 +82,37 @@ impl Unroller<'_, '_> {
         if !self.stands(&decl.condition, &name) {
             return;
         }
-        let mut versions = Vec::new();
-        let mut slots = |unroller: &mut Self, slots: &[(Located<String>, PartExpr)]| -> Vec<Slot> {
-            slots
-                .iter()
-                .enumerate()
-                .filter_map(|(index, (slot, part))| {
-                    if let Some(version) = &part.version {
-                        versions.push((index, version.clone()));
-                    }
-                    Some(Slot { name: slot.clone(), part: unroller.part(part, &name)? })
-                })
-                .collect()
-        };
-        let reads = slots(self, &decl.reads);
-        let writes = slots(self, &decl.writes);
-        let modifies = slots(self, &decl.modifies);
+        let slots = self.slots(decl, &name);
+        self.finish(decl, name, scope, slots);
+        self.count += 1;
+    }
+
+    /// What the pass reads, writes and modifies at the indices in force. Faulty slots are left out.
+    pub(super) fn slots(&mut self, decl: &PassDecl, name: &str) -> [Vec<Slot>; 3] {
+        [&decl.reads, &decl.writes, &decl.modifies].map(|slots| {
+            let slots = slots.iter();
+            slots.filter_map(|(slot, part)| Some(Slot { name: slot.clone(), part: self.part(part, name)? })).collect()
+        })
+    }
+
+    /// Adds a pass whose slots are known; `None` if something is wrong with it.
+    pub(super) fn finish(
+        &mut self,
+        decl: &PassDecl,
+        name: String,
+        scope: &str,
+        [reads, writes, modifies]: [Vec<Slot>; 3],
+    ) -> Option<&mut Pass> {
         let mut constants = Vec::new();
         for (constant, value) in &decl.constants {
             if let Some(value) = self.environment.number(value, &format!("the constant `{}` of `{name}`", constant.value)) {
                 constants.push((constant.clone(), value));
             }
         }
-        let Some(kind) = self.kind(&decl.kind, &name) else { return };
+        let run = self.run(&decl.run, &name)?;
+        let kind = self.kind(&decl.kind, &name)?;
+        let versions = decl.reads.iter().enumerate();
+        let versions = versions.filter_map(|(index, (_, part))| Some((index, part.version.clone()?))).collect();
         self.pending.push(Pending { scope: scope.to_owned(), after: decl.after.clone(), versions });
         self.passes.push(Pass {
             name,
@@ -124,10 +125,28 @@ impl Unroller<'_, '_> {
             writes,
             modifies,
             after: Vec::new(),
-            run: Run::OnChange,
+            run,
             batch: None,
-            elements: Vec::new(),
+            elements: self.elements.clone(),
         });
+        self.passes.last_mut()
+    }
+
+    fn run(&mut self, run: &RunDecl, name: &str) -> Option<Run> {
+        Some(match (self.iteration, run) {
+            (Some(iteration), _) => iteration,
+            (None, RunDecl::OnChange) => Run::OnChange,
+            (None, RunDecl::EveryFrame) => Run::EveryFrame,
+            (None, RunDecl::Accumulate(count)) => Run::Accumulate(self.at_least_one(count, "the number of runs of", name)?),
+        })
+    }
+
+    /// A count that may not be 0.
+    pub(super) fn at_least_one(&mut self, expr: &PlacedExpr, what: &str, name: &str) -> Option<u32> {
+        match self.small(expr, what, name)? {
+            0 => self.environment.bad(&format!("{what} `{name}`"), "it is 0, and must be at least 1".to_owned(), expr.span),
+            count => Some(count),
+        }
     }
 
     fn kind(&mut self, kind: &PassKindDecl, name: &str) -> Option<PassKind> {
@@ -161,6 +180,21 @@ impl Unroller<'_, '_> {
                 work: match work {
                     WorkDecl::Cover(part) => Work::Cover(self.part(part, name)?),
                     WorkDecl::Count(count) => Work::Count(self.small(count, "the count of", name)?),
+                    WorkDecl::Indirect(buffer, offset) => {
+                        let buffer = self.part(buffer, name)?;
+                        let offset = match offset {
+                            None => 0,
+                            Some(offset) => {
+                                let what = format!("the offset of `{name}`");
+                                let bytes = self.environment.count(offset, &what)?;
+                                if !bytes.is_multiple_of(4) {
+                                    return self.environment.bad(&what, format!("{bytes} is no multiple of 4"), offset.span);
+                                }
+                                bytes
+                            }
+                        };
+                        Work::Indirect { buffer, offset }
+                    }
                     WorkDecl::Groups(x, y, z) => {
                         let what = "the workgroups of";
                         Work::Groups([self.small(x, what, name)?, self.small(y, what, name)?, self.small(z, what, name)?])
@@ -172,7 +206,7 @@ impl Unroller<'_, '_> {
         })
     }
 
-    fn small(&mut self, expr: &PlacedExpr, what: &str, name: &str) -> Option<u32> {
+    pub(super) fn small(&mut self, expr: &PlacedExpr, what: &str, name: &str) -> Option<u32> {
         let what = format!("{what} `{name}`");
         let value = self.environment.count(expr, &what)?;
         match u32::try_from(value) {
@@ -181,7 +215,7 @@ impl Unroller<'_, '_> {
         }
     }
 
-    fn part(&mut self, part: &PartExpr, pass: &str) -> Option<PartRef> {
+    pub(super) fn part(&mut self, part: &PartExpr, pass: &str) -> Option<PartRef> {
         reference(self.environment, self.resources, part, pass)
     }
 
@@ -204,8 +238,14 @@ impl Unroller<'_, '_> {
                 let found = find(&self.passes, &by_plain_name, &pending.scope, &path.value);
                 match found.as_slice() {
                     [only] => {
-                        if let Some(slot) = self.passes[index].reads.get_mut(slot) {
+                        let pass = &mut self.passes[index];
+                        if let Some(slot) = pass.reads.get_mut(slot) {
                             slot.part.version = Some(*only);
+                        }
+                        for iteration in pass.batch.iter_mut().flat_map(|batch| &mut batch.iterations) {
+                            if let Some(part) = iteration.parts.get_mut(slot) {
+                                part.version = Some(*only);
+                            }
                         }
                     }
                     [] => self.environment.report(ExpandError::AbsentPass { path: path.value, span: path.span }),

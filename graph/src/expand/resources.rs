@@ -2,7 +2,7 @@
 
 use super::environment::Environment;
 use super::error::ExpandError;
-use super::types::{Dimension, Keep, Resource, Shape, TextureShape};
+use super::types::{Dimension, Resource, Shape, TextureShape};
 use crate::device::DeviceFacts;
 use crate::source::Span;
 use crate::validate::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
@@ -23,7 +23,7 @@ pub(super) fn resource(environment: &mut Environment<'_>, decl: &ResourceDecl, d
         }
         ResourceKind::Texture { .. } => Shape::Texture(texture(environment, name, &decl.kind, device)?),
     };
-    Some(Resource { name: name.to_owned(), span: decl.name.span, shape, clear: decl.clear, history: None, keep: Keep::Auto })
+    Some(Resource { name: name.to_owned(), span: decl.name.span, shape, clear: decl.clear, history: None, keep: decl.keep.value })
 }
 
 struct Check<'a, 'b> {

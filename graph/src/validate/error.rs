@@ -23,6 +23,12 @@ pub enum ValidateError {
     BadResource { name: String, reason: String, hint: Option<String>, span: Span },
     #[error("pass `{pass}`: {reason}")]
     BadPass { pass: String, reason: String, hint: Option<String>, span: Span },
+    #[error("`{text}` can't be read: {reason}")]
+    BadPrevious { text: String, reason: &'static str, hint: &'static str, span: Span },
+    #[error("`{variable}` counts the iterations of a batched loop, and this value is one for all of them")]
+    BatchedIndex { variable: String, span: Span },
+    #[error("pass `{pass}`: {reason}")]
+    BadRun { pass: String, reason: String, hint: &'static str, span: Span },
     #[error("the pipeline has no {what}")]
     Empty { what: &'static str, span: Span },
 }
@@ -38,6 +44,7 @@ impl From<ValidateError> for Diagnostic {
                     "pass" => "validate::unknown-pass",
                     "format" => "validate::unknown-format",
                     "scene count" => "validate::unknown-scene-count",
+                    "collection" => "validate::unknown-collection",
                     "slot" => "validate::unknown-slot",
                     _ => "validate::unknown-name",
                 };
@@ -60,6 +67,13 @@ impl From<ValidateError> for Diagnostic {
                 Diagnostic::error("validate::bad-resource", message).at(span, "here").maybe_hint(hint)
             }
             ValidateError::BadPass { hint, span, .. } => Diagnostic::error("validate::bad-pass", message).at(span, "here").maybe_hint(hint),
+            ValidateError::BadPrevious { hint, span, .. } => {
+                Diagnostic::error("validate::bad-previous", message).at(span, "this reference").hint(hint)
+            }
+            ValidateError::BatchedIndex { span, .. } => Diagnostic::error("validate::batched-index", message)
+                .at(span, "here")
+                .hint("only parts may name the index: the shader finds those of the iterations that run in `batch`"),
+            ValidateError::BadRun { hint, span, .. } => Diagnostic::error("validate::bad-run", message).at(span, "here").hint(hint),
             ValidateError::Empty { span, .. } => Diagnostic::error("validate::empty", message).at(span, "nothing here"),
         }
     }

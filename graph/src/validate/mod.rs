@@ -5,6 +5,7 @@
 //! by the next step.
 
 mod error;
+mod loops;
 mod params;
 mod passes;
 mod resources;
@@ -36,6 +37,11 @@ pub fn validate(document: &Document, file: FileId, published: &PublishedSchema) 
         counts: &published.counts,
         passes: Vec::new(),
         variables: Vec::new(),
+        declared: document.resources.values().collect(),
+        histories: Vec::new(),
+        collections: &published.collections,
+        batched: None,
+        spread: false,
         problems: Vec::new(),
     };
     passes::paths(&document.passes, "", 0, &mut scope.passes);
@@ -47,7 +53,7 @@ pub fn validate(document: &Document, file: FileId, published: &PublishedSchema) 
     }
     let params = document.params.iter().filter_map(|(name, doc)| params::param(&mut scope, name, doc)).collect();
     let resources = document.resources.iter().filter_map(|(name, doc)| resources::resource(&mut scope, name, doc)).collect();
-    let items = passes::items(&mut scope, &document.passes, &document.resources);
+    let items = passes::items(&mut scope, &document.passes);
     let mut outputs = Vec::new();
     for (name, reference) in &document.outputs {
         scope.check_name(name);
@@ -55,6 +61,10 @@ pub fn validate(document: &Document, file: FileId, published: &PublishedSchema) 
             outputs.push((Located { value: name.value.clone(), span: name.span }, part));
         }
     }
-    let problems = scope.problems;
-    if has_errors(&problems) { Err(problems) } else { Ok(Validated { doc: document.doc.clone(), params, resources, items, outputs }) }
+    let retained_budget = document.retained_budget.as_ref().and_then(|budget| scope.expression(budget));
+    let Scope { problems, histories, .. } = scope;
+    if has_errors(&problems) {
+        return Err(problems);
+    }
+    Ok(Validated { doc: document.doc.clone(), params, resources, items, outputs, histories, retained_budget })
 }

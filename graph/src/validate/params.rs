@@ -76,6 +76,7 @@ pub(super) fn param(scope: &mut Scope<'_>, name: &Text, doc: &ParamDoc) -> Optio
         default,
         range,
         options,
+        live: doc.live,
         unit: doc.unit.clone(),
         doc: doc.doc.clone(),
     })

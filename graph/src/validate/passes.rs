@@ -1,17 +1,19 @@
 //! Passes and loops: every name in them resolved.
 
 use super::error::ValidateError;
+use super::loops;
 use super::resources::plain_clear;
 use super::scope::Scope;
-use super::types::{Condition, Each, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RepeatDecl, View, WorkDecl};
+use super::types::{Condition, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, View, WorkDecl};
 use crate::expand::types::Located;
 use crate::plan::Cull;
 use crate::published::DrawFilter;
 use crate::source::Span;
-use crate::syntax::document::{BlendDoc, CullDoc, EachDoc, Entries, Expr, ObjectsDoc, PassDoc, ResourceDoc, Text, ViewDoc};
+use crate::syntax::document::{BlendDoc, CullDoc, Entries, Expr, IndirectDoc, ObjectsDoc, PassDoc, RunDoc, Text, ViewDoc};
+use crate::syntax::spanned::Spanned;
 
 /// Loops inside loops beyond this are refused.
-const MAX_LOOP_DEPTH: usize = 8;
+pub(super) const MAX_LOOP_DEPTH: usize = 8;
 
 /// The paths of all passes and loops, in the order of the file.
 pub(super) fn paths(passes: &Entries<PassDoc>, outer: &str, depth: usize, found: &mut Vec<String>) {
@@ -27,54 +29,21 @@ pub(super) fn paths(passes: &Entries<PassDoc>, outer: &str, depth: usize, found:
 }
 
 /// Checks passes and loops, in the order of the file.
-pub(super) fn items(scope: &mut Scope<'_>, passes: &Entries<PassDoc>, resources: &Entries<ResourceDoc>) -> Vec<Item> {
-    passes.iter().filter_map(|(name, pass)| item(scope, name, pass, resources)).collect()
+pub(super) fn items(scope: &mut Scope<'_>, passes: &Entries<PassDoc>) -> Vec<Item> {
+    passes.iter().filter_map(|(name, pass)| item(scope, name, pass)).collect()
 }
 
-fn item(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc, resources: &Entries<ResourceDoc>) -> Option<Item> {
+fn item(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<Item> {
     scope.check_name(name);
+    if scope.batched.is_some() && !matches!(pass, PassDoc::Compute { .. }) {
+        let hint = "the iterations of a batched loop run as one dispatch: move the pass out of it, or leave `batched` out";
+        bad(scope, name, "a batched loop holds only Compute passes".to_owned(), Some(hint), name.span);
+        return None;
+    }
     match pass {
-        PassDoc::Repeat { when, has, each, r#as, passes, .. } => {
-            let condition = condition(scope, when.as_ref(), has.as_ref());
-            let each = match &each.value {
-                EachDoc::Count(count) => scope.expression(count).map(Each::Count),
-                EachDoc::Face(cube) => face_loop(scope, name, cube, resources),
-            };
-            scope.check_name(r#as);
-            if scope.variables.len() >= MAX_LOOP_DEPTH {
-                bad(scope, name, format!("loops are nested deeper than {MAX_LOOP_DEPTH} levels"), None, name.span);
-                return None;
-            }
-            if scope.variables.contains(&r#as.value) || scope.params.contains(&r#as.value.as_str()) {
-                let reason = format!("`{}` is already the name of a parameter or of an outer loop's index", r#as.value);
-                bad(scope, name, reason, Some("choose another name under `as`"), r#as.span);
-            }
-            if passes.is_empty() {
-                bad(scope, name, "this loop repeats no pass".to_owned(), None, name.span);
-            }
-            scope.variables.push(r#as.value.clone());
-            let items = items(scope, passes, resources);
-            scope.variables.pop();
-            Some(Item::Repeat(Box::new(RepeatDecl {
-                name: located(name),
-                condition: condition?,
-                each: each?,
-                variable: r#as.value.clone(),
-                items,
-            })))
-        }
+        PassDoc::Repeat { .. } => loops::repeat(scope, name, pass).map(|decl| Item::Repeat(Box::new(decl))),
         _ => self::pass(scope, name, pass).map(|pass| Item::Pass(Box::new(pass))),
     }
-}
-
-fn face_loop(scope: &mut Scope<'_>, name: &Text, cube: &Text, resources: &Entries<ResourceDoc>) -> Option<Each> {
-    let part = scope.part(cube)?;
-    let (_, resource) = resources.get_index(part.resource.index())?;
-    if matches!(resource, ResourceDoc::Texture { dimension: crate::syntax::document::DimensionDoc::Cube, .. }) {
-        return Some(Each::Face);
-    }
-    bad(scope, name, format!("`{}` has no faces: it is not a cube texture", cube.value), Some("loop over a count instead"), cube.span);
-    None
 }
 
 /// The fields that several kinds share.
@@ -86,14 +55,20 @@ struct Common<'a> {
     read: Vec<(Located<String>, &'a Text)>,
     write: Vec<(Located<String>, &'a Text)>,
     modify: Vec<(Located<String>, &'a Text)>,
+    run: &'a Spanned<RunDoc>,
     after: &'a [Text],
 }
 
 impl<'a> Common<'a> {
     /// Of a kind with a shader; `parts` are read, written and modified.
-    fn of_shader(shader: &'a Text, constants: &'a Entries<Expr>, parts: [&'a Entries<Text>; 3], after: &'a [Text]) -> Common<'a> {
+    fn of_shader(
+        shader: &'a Text,
+        constants: &'a Entries<Expr>,
+        parts: [&'a Entries<Text>; 3],
+        (run, after): (&'a Spanned<RunDoc>, &'a [Text]),
+    ) -> Common<'a> {
         let [read, write, modify] = parts.map(slots);
-        Common { when: None, has: None, shader: Some(shader), constants: Some(constants), read, write, modify, after }
+        Common { when: None, has: None, shader: Some(shader), constants: Some(constants), read, write, modify, run, after }
     }
 }
 
@@ -118,6 +93,7 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
             read,
             write,
             modify,
+            run,
             after,
             ..
         } => {
@@ -164,36 +140,60 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 cull: culling(*cull),
                 blend: blends(scope, name, blend, write, modify),
             });
-            (Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) }, kind)
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    ..Common::of_shader(shader, constants, [read, write, modify], (run, after))
+                },
+                kind,
+            )
         }
-        PassDoc::Fullscreen { when, has, shader, entry, constants, blend, read, write, modify, after, .. } => {
+        PassDoc::Fullscreen { when, has, shader, entry, constants, blend, read, write, modify, run, after, .. } => {
             let kind = PassKindDecl::Fullscreen { entry: entry.as_ref().map(located), blend: blends(scope, name, blend, write, modify) };
             (
-                Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) },
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    ..Common::of_shader(shader, constants, [read, write, modify], (run, after))
+                },
                 Some(kind),
             )
         }
-        PassDoc::Compute { when, has, shader, entry, constants, cover, count, groups, read, write, modify, after, .. } => {
-            let work = match (cover, count, groups) {
-                (Some(cover), None, None) => scope.part(cover).map(WorkDecl::Cover),
-                (None, Some(count), None) => scope.expression(count).map(WorkDecl::Count),
-                (None, None, Some(groups)) => {
+        PassDoc::Compute {
+            when, has, shader, entry, constants, cover, count, groups, indirect, read, write, modify, run, after, ..
+        } => {
+            let work = match (cover, count, groups, indirect) {
+                (Some(cover), None, None, None) => scope.part(cover).map(WorkDecl::Cover),
+                (None, Some(count), None, None) => scope.expression(count).map(WorkDecl::Count),
+                (None, None, Some(groups), None) => {
                     let (x, y, z) = &groups.value;
                     match (scope.expression(x), scope.expression(y), scope.expression(z)) {
                         (Some(x), Some(y), Some(z)) => Some(WorkDecl::Groups(x, y, z)),
                         _ => None,
                     }
                 }
+                (None, None, None, Some(indirect)) => self::indirect(scope, name, indirect, [read, write, modify]),
                 _ => {
-                    let hint = Some("`cover` runs once per texel of a part, `count` so many times, `groups` so many workgroups");
-                    bad(scope, name, "a Compute says exactly one of `cover`, `count` and `groups`".to_owned(), hint, name.span);
+                    let hint = Some(
+                        "`cover` runs once per texel of a part, `count` so many times, `groups` so many workgroups, `indirect` as \
+                         many as a buffer says",
+                    );
+                    bad(scope, name, "a Compute says exactly one of `cover`, `count`, `groups` and `indirect`".to_owned(), hint, name.span);
                     None
                 }
             };
             let kind = work.map(|work| PassKindDecl::Compute { entry: entry.as_ref().map(located), work });
-            (Common { when: when.as_ref(), has: has.as_ref(), ..Common::of_shader(shader, constants, [read, write, modify], after) }, kind)
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    ..Common::of_shader(shader, constants, [read, write, modify], (run, after))
+                },
+                kind,
+            )
         }
-        PassDoc::Copy { when, has, read, write, after, .. } => {
+        PassDoc::Copy { when, has, read, write, run, after, .. } => {
             let slot = |name: &str, text: &Text| Located { value: name.to_owned(), span: text.span };
             (
                 Common {
@@ -204,12 +204,13 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                     read: vec![(slot("read", read), read)],
                     write: vec![(slot("write", write), write)],
                     modify: Vec::new(),
+                    run,
                     after,
                 },
                 Some(PassKindDecl::Copy),
             )
         }
-        PassDoc::Clear { when, has, write, value, after, .. } => (
+        PassDoc::Clear { when, has, write, value, run, after, .. } => (
             Common {
                 when: when.as_ref(),
                 has: has.as_ref(),
@@ -218,6 +219,7 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 read: Vec::new(),
                 write: vec![(Located { value: "write".to_owned(), span: write.span }, write)],
                 modify: Vec::new(),
+                run,
                 after,
             },
             Some(PassKindDecl::Clear { value: value.as_ref().map(|value| plain_clear(value.value)) }),
@@ -233,7 +235,8 @@ fn finish(scope: &mut Scope<'_>, name: &Text, common: Common<'_>, kind: Option<P
     let mut parts = |slots: Vec<(Located<String>, &Text)>, writes: bool| -> Vec<(Located<String>, PartExpr)> {
         let mut found = Vec::new();
         for (slot, text) in slots {
-            let Some(part) = scope.part(text) else { continue };
+            let found_part = if writes { scope.part(text) } else { scope.readable(text) };
+            let Some(part) = found_part else { continue };
             if writes && let Some(version) = &part.version {
                 bad(scope, name, "`@pass` names a value to read, and nothing can be written there".to_owned(), None, version.span);
                 continue;
@@ -242,13 +245,17 @@ fn finish(scope: &mut Scope<'_>, name: &Text, common: Common<'_>, kind: Option<P
         }
         found
     };
-    let reads = parts(common.read, false);
+    let mut reads = parts(common.read, false);
     let writes = parts(common.write, true);
     let modifies = parts(common.modify, true);
     if writes.is_empty() && modifies.is_empty() && scope.problems.len() == before {
         bad(scope, name, "it writes nothing, so that nothing could ever need it".to_owned(), Some("add `write` or `modify`"), name.span);
     }
     check_slots_distinct(scope, name, &[("read", &reads), ("write", &writes), ("modify", &modifies)]);
+    if let Some(PassKindDecl::Compute { work: WorkDecl::Indirect(buffer, _), .. }) = &kind {
+        reads.push((Located { value: INDIRECT.to_owned(), span: buffer.span }, buffer.clone()));
+    }
+    let run = run(scope, name, common.run);
     let mut constants = Vec::new();
     for (constant, value) in common.constants.into_iter().flatten() {
         if let Some(value) = scope.expression(value) {
@@ -265,7 +272,45 @@ fn finish(scope: &mut Scope<'_>, name: &Text, common: Common<'_>, kind: Option<P
         reads,
         writes,
         modifies,
+        run: run?,
         after,
+    })
+}
+
+/// The slot of the buffer that says how much work there is.
+const INDIRECT: &str = "indirect";
+
+fn indirect(scope: &mut Scope<'_>, name: &Text, doc: &Spanned<IndirectDoc>, slots: [&Entries<Text>; 3]) -> Option<WorkDecl> {
+    if let Some((slot, _)) = slots.iter().find_map(|entries| entries.get_key_value(INDIRECT)) {
+        let hint = Some("give the variable and its slot another name");
+        bad(scope, name, "`indirect` is the slot of the buffer that says how much work there is".to_owned(), hint, slot.span);
+    }
+    let (buffer, offset) = match &doc.value {
+        IndirectDoc::First(buffer) => (buffer, None),
+        IndirectDoc::At(buffer, offset) => (buffer, Some(offset)),
+    };
+    let buffer = scope.part(&Spanned::new(buffer.clone(), doc.span));
+    let offset = match offset {
+        None => None,
+        Some(offset) => Some(scope.expression(&Spanned::new(offset.clone(), doc.span))?),
+    };
+    Some(WorkDecl::Indirect(buffer?, offset))
+}
+
+fn run(scope: &mut Scope<'_>, name: &Text, doc: &Spanned<RunDoc>) -> Option<RunDecl> {
+    if scope.spread && doc.value != RunDoc::OnChange {
+        scope.report(ValidateError::BadRun {
+            pass: name.value.clone(),
+            reason: "a loop around it says when its iterations run".to_owned(),
+            hint: "leave `run` out here, or move the pass out of the loop",
+            span: doc.span,
+        });
+        return None;
+    }
+    Some(match &doc.value {
+        RunDoc::OnChange => RunDecl::OnChange,
+        RunDoc::EveryFrame => RunDecl::EveryFrame,
+        RunDoc::Accumulate(count) => RunDecl::Accumulate(scope.expression(count)?),
     })
 }
 
@@ -301,7 +346,7 @@ fn blends(
     blend.iter().map(|(slot, blend)| (located(slot), *blend)).collect()
 }
 
-fn condition(scope: &mut Scope<'_>, when: Option<&Expr>, has: Option<&Text>) -> Option<Condition> {
+pub(super) fn condition(scope: &mut Scope<'_>, when: Option<&Expr>, has: Option<&Text>) -> Option<Condition> {
     let when: Option<Option<PlacedExpr>> = match when {
         None => Some(None),
         Some(when) => scope.expression(when).map(Some),
@@ -334,10 +379,10 @@ fn filter(objects: ObjectsDoc) -> DrawFilter {
     }
 }
 
-fn located(text: &Text) -> Located<String> {
+pub(super) fn located(text: &Text) -> Located<String> {
     Located { value: text.value.clone(), span: text.span }
 }
 
-fn bad(scope: &mut Scope<'_>, pass: &Text, reason: String, hint: Option<&str>, span: Span) {
+pub(super) fn bad(scope: &mut Scope<'_>, pass: &Text, reason: String, hint: Option<&str>, span: Span) {
     scope.report(ValidateError::BadPass { pass: pass.value.clone(), reason, hint: hint.map(str::to_owned), span });
 }

@@ -3,10 +3,10 @@
 use super::error::ValidateError;
 use super::scope::Scope;
 use super::types::{Mips, ResourceDecl, ResourceKind, Size};
-use crate::expand::types::{ClearValue, Dimension, Located};
+use crate::expand::types::{ClearValue, Dimension, Keep, Located, OnResize};
 use crate::format::{FORMATS, Format, SampleKind};
 use crate::source::Span;
-use crate::syntax::document::{ClearDoc, DimensionDoc, FormatDoc, MipsDoc, ResourceDoc, SizeDoc, Text};
+use crate::syntax::document::{ClearDoc, DimensionDoc, FormatDoc, HistoryDoc, KeepDoc, MipsDoc, OnResizeDoc, ResourceDoc, SizeDoc, Text};
 use crate::syntax::spanned::Spanned;
 
 /// Checks one resource.
@@ -14,7 +14,7 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
     scope.check_name(name);
     let located = Located { value: name.value.clone(), span: name.span };
     match doc {
-        ResourceDoc::Buffer { size, clear, .. } => {
+        ResourceDoc::Buffer { size, clear, history, keep, .. } => {
             let size = scope.expression(size)?;
             let clear = match clear {
                 None => None,
@@ -24,9 +24,14 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
                     None
                 }
             };
-            Some(ResourceDecl { name: located, kind: ResourceKind::Buffer { size }, clear })
+            if let Some(HistoryDoc { first: Some(first), .. }) = history.as_ref().map(|history| history.value)
+                && first != ClearDoc::Zero
+            {
+                report(scope, name, "a buffer can only begin as `Zero`".to_owned(), history.as_ref().map_or(name.span, |doc| doc.span));
+            }
+            Some(with_past(located, ResourceKind::Buffer { size }, clear, history.as_ref(), keep.as_ref()))
         }
-        ResourceDoc::Texture { dimension, format, size, layers, mips, samples, clear, .. } => {
+        ResourceDoc::Texture { dimension, format, size, layers, mips, samples, clear, history, keep, .. } => {
             let dimension = match dimension {
                 DimensionDoc::D1 => Dimension::D1,
                 DimensionDoc::D2 => Dimension::D2,
@@ -48,6 +53,11 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
             let samples = optional(scope, samples.as_ref());
             let formats = formats?;
             let clear = clear.as_ref().and_then(|clear| clear_value(scope, name, clear, &formats));
+            if let Some(history) = history
+                && let Some(first) = history.value.first
+            {
+                clear_value(scope, name, &Spanned::new(first, history.span), &formats);
+            }
             let (size, layers, mips, samples) = (shape?, layers?, transpose(mips)?, samples?);
             let kind = ResourceKind::Texture {
                 dimension,
@@ -59,9 +69,30 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
                 mips,
                 samples,
             };
-            Some(ResourceDecl { name: located, kind, clear })
+            Some(with_past(located, kind, clear, history.as_ref(), keep.as_ref()))
         }
     }
+}
+
+fn with_past(
+    name: Located<String>,
+    kind: ResourceKind,
+    clear: Option<ClearValue>,
+    history: Option<&Spanned<HistoryDoc>>,
+    keep: Option<&Spanned<KeepDoc>>,
+) -> ResourceDecl {
+    let first = history.and_then(|history| history.value.first).map(plain_clear);
+    let on_resize = match history.map(|history| history.value.on_resize).unwrap_or_default() {
+        OnResizeDoc::First => OnResize::First,
+        OnResizeDoc::Crop => OnResize::Crop,
+    };
+    let span = keep.map_or(name.span, |keep| keep.span);
+    let keep = match keep.map(|keep| keep.value) {
+        None | Some(KeepDoc::Auto) => Keep::Auto,
+        Some(KeepDoc::Always) => Keep::Always,
+        Some(KeepDoc::Never) => Keep::Never,
+    };
+    ResourceDecl { name, kind, clear, first, on_resize, keep: Located { value: keep, span } }
 }
 
 /// `Some(None)` where nothing is given, `None` where what is given is wrong.

@@ -2,13 +2,16 @@
 
 use std::collections::HashMap;
 
+use indexmap::IndexMap;
+
 use super::error::ValidateError;
 use super::types::{PartExpr, PlacedExpr};
 use crate::diagnostic::Diagnostic;
 use crate::expand::types::{Located, ResourceId, Value};
 use crate::expression::{self, Expression};
+use crate::published::Collection;
 use crate::source::Span;
-use crate::syntax::document::{Expr, ExprDoc, Text};
+use crate::syntax::document::{Expr, ExprDoc, ResourceDoc, Text};
 
 /// What names mean, and the problems found so far.
 pub(super) struct Scope<'a> {
@@ -24,9 +27,22 @@ pub(super) struct Scope<'a> {
     pub passes: Vec<String>,
     /// Loop variables, outermost first.
     pub variables: Vec<String>,
+    /// Declarations by [`ResourceId`].
+    pub declared: Vec<&'a ResourceDoc>,
+    /// Resources whose past is read.
+    pub histories: Vec<Located<ResourceId>>,
+    /// What loops may run over.
+    pub collections: &'a IndexMap<String, Collection>,
+    /// The index of the batched loop around.
+    pub batched: Option<String>,
+    /// Whether a loop around spreads its iterations over frames.
+    pub spread: bool,
     /// Everything wrong.
     pub problems: Vec<Diagnostic>,
 }
+
+/// Begins a reference to what a resource held at the end of the frame before.
+const PREVIOUS: &str = "previous(";
 
 /// Names start with a letter and hold letters, digits and underscores.
 pub(super) fn is_name(text: &str) -> bool {
@@ -46,6 +62,11 @@ fn inside(span: Span, range: &std::ops::Range<usize>, length: usize) -> Span {
 }
 
 impl Scope<'_> {
+    /// Whether a parameter has this name.
+    pub fn is_param(&self, name: &str) -> bool {
+        self.params.contains(&name)
+    }
+
     /// Records a problem.
     pub fn report(&mut self, error: ValidateError) {
         self.problems.push(error.into());
@@ -71,6 +92,14 @@ impl Scope<'_> {
             ExprDoc::Float(value) => Expression::Literal(Value::Float(*value)),
             ExprDoc::Text(text) => self.parse(text, expr.span, 0, text.len())?,
         };
+        if let Some(variable) = &self.batched {
+            let mut names = Vec::new();
+            expression.names(&mut names);
+            if names.iter().any(|(name, _)| name == variable) {
+                self.report(ValidateError::BatchedIndex { variable: variable.clone(), span: expr.span });
+                return None;
+            }
+        }
         Some(PlacedExpr { expression, span: expr.span })
     }
 
@@ -129,25 +158,88 @@ impl Scope<'_> {
     /// Parses a reference such as `radiance.mip(m - 1)` and resolves its resource.
     pub fn part(&mut self, text: &Text) -> Option<PartExpr> {
         let value = text.value.as_str();
-        let bad = |reason: String| ValidateError::BadReference { text: value.to_owned(), reason, span: text.span };
+        if value.trim_start().starts_with(PREVIOUS) {
+            self.report(ValidateError::BadPrevious {
+                text: value.to_owned(),
+                reason: "the past can only stand under `read`",
+                hint: "a Copy can keep it: `Copy(read: \"previous(x)\", write: ..)`",
+                span: text.span,
+            });
+            return None;
+        }
+        self.reference(text)
+    }
+
+    /// Parses a reference under `read`, where the past may stand: `previous(radiance).mip(0)`.
+    pub fn readable(&mut self, text: &Text) -> Option<PartExpr> {
+        let value = text.value.as_str();
+        let Some(rest) = value.trim_start().strip_prefix(PREVIOUS) else { return self.reference(text) };
+        let bad = |reason, hint| ValidateError::BadPrevious { text: value.to_owned(), reason, hint, span: text.span };
+        if rest.trim_start().starts_with(PREVIOUS) {
+            self.report(bad("the past of the past is not kept", "copy the past to a resource of its own, and read the past of that one"));
+            return None;
+        }
+        if value.contains('@') {
+            self.report(bad("the past is the value at the end of the frame before", "leave `@` and the pass out"));
+            return None;
+        }
+        let Some((inner, selectors)) = rest.split_once(')') else {
+            self.report(bad("it has no closing `)`", "write `previous(name)`, and parts behind it: `previous(name).mip(0)`"));
+            return None;
+        };
+        let start = value.len() - rest.len();
+        if inner.contains('(') {
+            self.report(bad("a part stands inside of the brackets", "write parts behind them: `previous(name).mip(0)`"));
+            return None;
+        }
+        let source = self.name(inner.trim(), text, start..start + inner.len())?;
+        let known = self.histories.iter().position(|history| history.value == source);
+        let index = known.unwrap_or_else(|| {
+            self.histories.push(Located { value: source, span: text.span });
+            self.histories.len() - 1
+        });
+        let id = ResourceId((self.declared.len() + index) as u32);
+        self.selectors(text, id, value.len() - selectors.len(), value)
+    }
+
+    /// The resource of a name that stands in a range of a reference.
+    fn name(&mut self, name: &str, text: &Text, range: std::ops::Range<usize>) -> Option<ResourceId> {
+        if !is_name(name) {
+            let reason = format!("`{name}` is not a name");
+            self.report(ValidateError::BadReference { text: text.value.clone(), reason, span: text.span });
+            return None;
+        }
+        let found = self.resources.get(name).copied();
+        if found.is_none() {
+            let known = self.sorted_resources();
+            let span = inside(text.span, &range, text.value.len());
+            self.report(ValidateError::Unknown { what: "resource", name: name.to_owned(), known, span });
+        }
+        found
+    }
+
+    fn reference(&mut self, text: &Text) -> Option<PartExpr> {
+        let value = text.value.as_str();
         let (reference, version) = match value.split_once('@') {
             Some((reference, version)) => (reference, Some(version.trim())),
             None => (value, None),
         };
         let name_end = reference.find('.').unwrap_or(reference.len());
-        let name = reference[..name_end].trim();
-        if !is_name(name) {
-            self.report(bad(format!("`{name}` is not a name")));
-            return None;
+        let resource = self.name(reference[..name_end].trim(), text, 0..name_end)?;
+        let mut part = self.selectors(text, resource, name_end, reference)?;
+        if let Some(version) = version {
+            let place = inside(text.span, &(reference.len() + 1..value.len()), value.len());
+            part.version = Some(self.pass_path(version, place)?);
         }
-        let Some(resource) = self.resources.get(name).copied() else {
-            let known = self.sorted_resources();
-            let span = inside(text.span, &(0..name_end), value.len());
-            self.report(ValidateError::Unknown { what: "resource", name: name.to_owned(), known, span });
-            return None;
-        };
+        Some(part)
+    }
+
+    /// `.mip(m).face(f)`, from a byte of a reference to its end.
+    fn selectors(&mut self, text: &Text, resource: ResourceId, start: usize, reference: &str) -> Option<PartExpr> {
+        let value = text.value.as_str();
+        let bad = |reason: String| ValidateError::BadReference { text: value.to_owned(), reason, span: text.span };
         let mut part = PartExpr { resource, mip: None, layer: None, version: None, span: text.span };
-        let mut at = name_end;
+        let mut at = start;
         while at < reference.len() {
             let rest = &reference[at..];
             let Some((selector, index)) = rest.strip_prefix('.').and_then(|rest| rest.split_once('(')) else {
@@ -174,10 +266,6 @@ impl Scope<'_> {
             }
             *target = Some(PlacedExpr { expression, span: text.span });
             at = start + length + 1;
-        }
-        if let Some(version) = version {
-            let place = inside(text.span, &(reference.len() + 1..value.len()), value.len());
-            part.version = Some(self.pass_path(version, place)?);
         }
         Some(part)
     }

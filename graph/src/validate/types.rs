@@ -1,6 +1,6 @@
 //! The output of validation: the document with names resolved and expressions parsed, loops and conditions still in place.
 
-use crate::expand::types::{ClearValue, Dimension, Located, ResourceId, Value};
+use crate::expand::types::{ClearValue, Dimension, Keep, Located, OnResize, ResourceId, Value};
 use crate::expression::Expression;
 use crate::format::Format;
 use crate::plan::Cull;
@@ -21,6 +21,10 @@ pub struct Validated {
     pub items: Vec<Item>,
     /// Outputs in the order of the file.
     pub outputs: Vec<(Located<String>, PartExpr)>,
+    /// Resources whose past is read, each once. Their histories are numbered behind all of `resources`, in this order.
+    pub histories: Vec<Located<ResourceId>>,
+    /// MiB that content may take which is kept though it could be made again.
+    pub retained_budget: Option<PlacedExpr>,
 }
 
 /// A parameter.
@@ -34,6 +38,8 @@ pub struct ParamDecl {
     pub range: Option<(f64, f64)>,
     /// The words, if it is one.
     pub options: Vec<String>,
+    /// It is expected to change while frames are rendered.
+    pub live: bool,
     /// For people.
     pub unit: Option<String>,
     /// For people.
@@ -58,6 +64,12 @@ pub struct ResourceDecl {
     pub kind: ResourceKind,
     /// The declared value.
     pub clear: Option<ClearValue>,
+    /// The first value of its history, if that is not the declared value or zero.
+    pub first: Option<ClearValue>,
+    /// What its history holds after it changed its extent.
+    pub on_resize: OnResize,
+    /// What the author says of keeping its content.
+    pub keep: Located<Keep>,
 }
 
 /// What a resource is.
@@ -144,8 +156,21 @@ pub struct RepeatDecl {
     pub each: Each,
     /// The name of the index.
     pub variable: String,
+    /// All iterations become one pass.
+    pub batched: bool,
+    /// Only some iterations run in a frame.
+    pub spread: Option<SpreadDecl>,
     /// What is repeated.
     pub items: Vec<Item>,
+}
+
+/// How many iterations of a loop run in a frame.
+#[derive(Debug, Clone, PartialEq)]
+pub struct SpreadDecl {
+    /// At most so many a frame.
+    pub per_frame: PlacedExpr,
+    /// How often each runs after a change.
+    pub rounds: Option<PlacedExpr>,
 }
 
 /// What a loop runs over.
@@ -155,6 +180,32 @@ pub enum Each {
     Count(PlacedExpr),
     /// The six faces of a cube texture.
     Face,
+    /// The layers of a texture.
+    Layer(ResourceId),
+    /// The mip levels of a texture, from one on.
+    Mip(ResourceId, Option<PlacedExpr>),
+    /// x, y, z.
+    Axis,
+    /// The rows of a published table.
+    Scene {
+        /// The name of their count.
+        count: String,
+        /// The table.
+        table: String,
+        /// The shader variable that gets the row.
+        element: String,
+        /// At most so many.
+        most: Option<PlacedExpr>,
+    },
+}
+
+/// When a pass runs.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub enum RunDecl {
+    OnChange,
+    EveryFrame,
+    Accumulate(PlacedExpr),
 }
 
 /// A pass.
@@ -176,6 +227,8 @@ pub struct PassDecl {
     pub writes: Vec<(Located<String>, PartExpr)>,
     /// Outputs that keep what is there.
     pub modifies: Vec<(Located<String>, PartExpr)>,
+    /// When it runs.
+    pub run: RunDecl,
     /// Passes that must come first.
     pub after: Vec<Located<String>>,
 }
@@ -223,4 +276,6 @@ pub enum WorkDecl {
     Cover(PartExpr),
     Count(PlacedExpr),
     Groups(PlacedExpr, PlacedExpr, PlacedExpr),
+    /// The buffer, and the bytes from its start.
+    Indirect(PartExpr, Option<PlacedExpr>),
 }

@@ -1,200 +1,9 @@
-//! The document types: what a pipeline file says, as the author wrote it, with places.
-//!
-//! Names are not resolved and expressions not evaluated here; nothing later edits a document. Every type also reads with the
-//! `ron` crate (extensions `implicit_some` and `unwrap_newtypes`), which is the oracle of the reader.
+//! Passes and loops of a document.
 
-use indexmap::IndexMap;
 use serde::Deserialize;
 
-use super::spanned::Spanned;
-
-/// A name, an expression or a reference, with its place.
-pub type Text = Spanned<String>;
-/// An ordered map from names to entries.
-pub type Entries<T> = IndexMap<Text, T>;
-
-/// A whole pipeline file.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(rename = "Pipeline", deny_unknown_fields)]
-pub struct Document {
-    /// What the pipeline computes, from which source, and its limits.
-    pub doc: String,
-    /// What a user may set.
-    #[serde(default)]
-    pub params: Entries<ParamDoc>,
-    /// Textures and buffers.
-    #[serde(default)]
-    pub resources: Entries<ResourceDoc>,
-    /// Passes and loops over passes.
-    pub passes: Entries<PassDoc>,
-    /// The results, by the names under which users ask for them.
-    pub outputs: Entries<Text>,
-}
-
-/// A parameter.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(rename = "Param", deny_unknown_fields)]
-pub struct ParamDoc {
-    /// Its value unless set; also decides its type.
-    pub default: Spanned<ValueDoc>,
-    /// Smallest and largest value, both allowed. For numbers only.
-    #[serde(default)]
-    pub range: Option<Spanned<(ValueDoc, ValueDoc)>>,
-    /// The allowed words, if the default is a string. A shader sees the index of the word.
-    #[serde(default)]
-    pub options: Option<Spanned<Vec<String>>>,
-    /// For people: `m`, `texels`, `EV`.
-    #[serde(default)]
-    pub unit: Option<String>,
-    /// What it does.
-    #[serde(default)]
-    pub doc: String,
-}
-
-/// A literal value.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
-pub enum ValueDoc {
-    /// `true`, `false`.
-    Bool(bool),
-    /// A whole number.
-    Int(i64),
-    /// A number with a point.
-    Float(f64),
-    /// A word out of `options`.
-    Word(String),
-    /// Two to four numbers.
-    Vector(Vec<f64>),
-}
-
-/// A number, or an expression over parameters as a string.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
-pub enum ExprDoc {
-    /// `128`
-    Int(i64),
-    /// `0.5`
-    Float(f64),
-    /// `"resolution / 2"`
-    Text(String),
-}
-
-/// An expression with its place.
-pub type Expr = Spanned<ExprDoc>;
-
-/// A texture or a buffer.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(rename = "Resource", deny_unknown_fields)]
-#[allow(clippy::large_enum_variant, reason = "buffers are few; a box would only burden the reader")]
-pub enum ResourceDoc {
-    /// Texels.
-    Texture {
-        /// For people.
-        #[serde(default)]
-        doc: Option<String>,
-        /// 2D unless said otherwise.
-        #[serde(default)]
-        dimension: DimensionDoc,
-        /// One of WebGPU's format names, or a list in order of preference.
-        format: Spanned<FormatDoc>,
-        /// The output's size unless said otherwise.
-        #[serde(default)]
-        size: Spanned<SizeDoc>,
-        /// Array layers, or cubes; 1 unless said otherwise.
-        #[serde(default)]
-        layers: Option<Expr>,
-        /// 1 unless said otherwise.
-        #[serde(default)]
-        mips: Option<Spanned<MipsDoc>>,
-        /// 1 or 4.
-        #[serde(default)]
-        samples: Option<Expr>,
-        /// The value of parts that nothing produced, and of texels that a pass may leave out.
-        #[serde(default)]
-        clear: Option<Spanned<ClearDoc>>,
-    },
-    /// Bytes.
-    Buffer {
-        /// For people.
-        #[serde(default)]
-        doc: Option<String>,
-        /// Bytes, a multiple of 4.
-        size: Expr,
-        /// `Zero`, or nothing.
-        #[serde(default)]
-        clear: Option<Spanned<ClearDoc>>,
-    },
-}
-
-/// The shape of a texture.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
-#[serde(rename = "Dimension")]
-pub enum DimensionDoc {
-    /// A line of texels.
-    D1,
-    /// An image.
-    #[default]
-    D2,
-    /// A volume.
-    D3,
-    /// Six square faces, in WebGPU's order +X -X +Y -Y +Z -Z.
-    Cube,
-}
-
-/// One format or several in order of preference.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(untagged)]
-pub enum FormatDoc {
-    /// `"rgba16float"`
-    One(String),
-    /// `["rg11b10ufloat", "rgba16float"]`
-    FirstOf(Vec<String>),
-}
-
-/// The extent of a texture.
-#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
-#[serde(rename = "Size")]
-pub enum SizeDoc {
-    /// As large as the rendered image.
-    #[default]
-    Output,
-    /// The rendered image times a factor, rounded up.
-    Scaled(Expr),
-    /// Width of a 1D texture.
-    Line(Expr),
-    /// Width and height alike.
-    Square(Expr),
-    /// Width and height.
-    Exact(Expr, Expr),
-    /// Width, height and depth alike.
-    Cube(Expr),
-    /// Width, height and depth.
-    Volume(Expr, Expr, Expr),
-}
-
-/// How many mip levels.
-#[derive(Debug, Clone, PartialEq, Deserialize)]
-#[serde(rename = "Mips")]
-pub enum MipsDoc {
-    /// Down to one texel.
-    Full,
-    /// So many.
-    Count(Expr),
-}
-
-/// A value to clear to.
-#[derive(Debug, Clone, Copy, PartialEq, Deserialize)]
-#[serde(rename = "Clear")]
-pub enum ClearDoc {
-    /// All bits zero.
-    Zero,
-    /// Red, green, blue, alpha; linear.
-    Color(f64, f64, f64, f64),
-    /// Depth, 0 to 1.
-    Depth(f64),
-    /// For integer formats.
-    Uint(u32, u32, u32, u32),
-}
+use super::{ClearDoc, Entries, Expr, ExprDoc, Text};
+use crate::syntax::spanned::Spanned;
 
 /// Which surfaces a Draw draws.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Deserialize)]
@@ -300,6 +109,51 @@ pub enum EachDoc {
     Count(Expr),
     /// The six faces of a cube texture.
     Face(Text),
+    /// The layers of a texture.
+    Layer(Text),
+    /// The mip levels of a texture, from the second value on.
+    Mip(Text, #[serde(default)] Option<Expr>),
+    /// 0, 1 and 2: x, y and z.
+    Axis,
+    /// What the scene has of something, by the name of its count; at most as many as the second value says.
+    Scene(Text, #[serde(default)] Option<Expr>),
+}
+
+/// When a pass runs.
+#[derive(Debug, Clone, PartialEq, Default, Deserialize)]
+#[serde(rename = "Run")]
+pub enum RunDoc {
+    /// When something that it reads has changed.
+    #[default]
+    OnChange,
+    /// In every frame.
+    EveryFrame,
+    /// Once a frame, so many times after a change.
+    Accumulate(Expr),
+}
+
+/// When the iterations of a loop run.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(rename = "RepeatRun", deny_unknown_fields)]
+pub enum RepeatRunDoc {
+    /// Some a frame, until none is due.
+    Spread {
+        /// At most so many iterations a frame.
+        per_frame: Expr,
+        /// How often each runs after a change; once unless said otherwise.
+        #[serde(default)]
+        rounds: Option<Expr>,
+    },
+}
+
+/// The buffer that says how many workgroups run.
+#[derive(Debug, Clone, PartialEq, Deserialize)]
+#[serde(untagged)]
+pub enum IndirectDoc {
+    /// `"args"`
+    First(String),
+    /// `("args", 16)`: so many bytes from its start.
+    At(String, ExprDoc),
 }
 
 /// A pass, or a loop over passes.
@@ -351,6 +205,9 @@ pub enum PassDoc {
         /// Outputs that keep what is there.
         #[serde(default)]
         modify: Entries<Text>,
+        /// When it runs.
+        #[serde(default)]
+        run: Spanned<RunDoc>,
         /// Passes that must come first.
         #[serde(default)]
         after: Vec<Text>,
@@ -386,11 +243,14 @@ pub enum PassDoc {
         /// Outputs that keep what is there.
         #[serde(default)]
         modify: Entries<Text>,
+        /// When it runs.
+        #[serde(default)]
+        run: Spanned<RunDoc>,
         /// Passes that must come first.
         #[serde(default)]
         after: Vec<Text>,
     },
-    /// Runs a compute shader. Exactly one of `cover`, `count` and `groups`.
+    /// Runs a compute shader. Exactly one of `cover`, `count`, `groups` and `indirect`.
     Compute {
         /// For people.
         #[serde(default)]
@@ -418,6 +278,9 @@ pub enum PassDoc {
         /// So many workgroups.
         #[serde(default)]
         groups: Option<Spanned<(Expr, Expr, Expr)>>,
+        /// As many workgroups as three `u32` of a buffer say.
+        #[serde(default)]
+        indirect: Option<Spanned<IndirectDoc>>,
         /// Inputs by shader variable.
         #[serde(default)]
         read: Entries<Text>,
@@ -427,6 +290,9 @@ pub enum PassDoc {
         /// Outputs that keep what is there.
         #[serde(default)]
         modify: Entries<Text>,
+        /// When it runs.
+        #[serde(default)]
+        run: Spanned<RunDoc>,
         /// Passes that must come first.
         #[serde(default)]
         after: Vec<Text>,
@@ -446,6 +312,9 @@ pub enum PassDoc {
         read: Text,
         /// What is written.
         write: Text,
+        /// When it runs.
+        #[serde(default)]
+        run: Spanned<RunDoc>,
         /// Passes that must come first.
         #[serde(default)]
         after: Vec<Text>,
@@ -466,6 +335,9 @@ pub enum PassDoc {
         /// The resource's declared value, unless said here.
         #[serde(default)]
         value: Option<Spanned<ClearDoc>>,
+        /// When it runs.
+        #[serde(default)]
+        run: Spanned<RunDoc>,
         /// Passes that must come first.
         #[serde(default)]
         after: Vec<Text>,
@@ -485,6 +357,12 @@ pub enum PassDoc {
         each: Spanned<EachDoc>,
         /// The name of the index in expressions, parts and `params`.
         r#as: Text,
+        /// All iterations that are due run as one pass.
+        #[serde(default)]
+        batched: bool,
+        /// Not all iterations run in one frame.
+        #[serde(default)]
+        run: Option<Spanned<RepeatRunDoc>>,
         /// What is repeated.
         passes: Entries<PassDoc>,
     },
