@@ -3,11 +3,13 @@
 #![allow(clippy::expect_used, reason = "a test stops where it can't go on")]
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use luminaire::files::{DiskFiles, embedded_pipelines};
 use luminaire::graph::compile::{CompileInput, compile};
 use luminaire::graph::device::DeviceFacts;
 use luminaire::graph::diagnostic::render;
+use luminaire::graph::dirty::Tracker;
 use luminaire::graph::published::SceneCounts;
 use luminaire::graph::{dump, execute};
 
@@ -27,8 +29,10 @@ fn plan_text(pipeline: &str, counts: &SceneCounts) -> String {
     assert!(problems.is_empty(), "{pipeline}:\n{problems}");
     let plan = compilation.plan.expect("a plan where there are no problems");
     let mut recorder = execute::record::Recorder::default();
-    execute::prepare(&plan, &mut recorder).expect("the recorder takes everything");
-    execute::execute(&plan, &mut recorder).expect("the recorder takes everything");
+    let tracker = Tracker::new(Arc::new(plan.clone()));
+    let frame = tracker.frame(&vec![0; plan.inputs.len()]);
+    execute::prepare(&plan, &[], &mut recorder).expect("the recorder takes everything");
+    execute::execute(&plan, &frame, &mut recorder).expect("the recorder takes everything");
     format!("{}\n== Verbs\n{}", dump::text(&plan, &compilation.sources), recorder.text())
 }
 
