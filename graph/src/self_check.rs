@@ -214,7 +214,7 @@ fn order(plan: &Plan) -> Vec<String> {
                 content.final_seen |= read.version.is_none();
             }
         }
-        for write in step.uses.iter().filter(|used| used.role != Role::Read) {
+        for write in step.uses.iter().filter(|used| crate::schedule::writes(used.role)) {
             for (mip, layer) in texels(write) {
                 let content = contents.entry((write.resource.0, mip, layer)).or_default();
                 let modifies = write.role == Role::Modify;

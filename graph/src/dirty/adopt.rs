@@ -45,9 +45,10 @@ impl Tracker {
         new.names = std::mem::take(&mut self.names);
         let resources = self.resources_in(&new);
         let memories = self.memories_in(&mut new, &resources);
-        let nodes = self.nodes_in(&mut new);
-        self.keep_pieces(&mut new, &resources, &memories, &nodes);
-        self.keep_states(&mut new, &nodes);
+        let (named, nodes) = self.nodes_in(&mut new);
+        self.find_remade(&mut new, &resources);
+        self.keep_pieces(&mut new, &resources, &memories, &named);
+        self.keep_states(&mut new, &named, &nodes);
         let carried = self.keep_past(&mut new, &resources, &memories);
         new.find_unheld();
         new.start_unheld_anew();
@@ -94,17 +95,18 @@ impl Tracker {
         taken
     }
 
-    /// By node of the new plan: the same node of the old one, if there is one and it reads the same.
-    fn nodes_in(&mut self, new: &mut Tracker) -> Vec<Option<u32>> {
+    /// By node of the new plan: the old one of its name, and the same if it is made and reads the same.
+    fn nodes_in(&mut self, new: &mut Tracker) -> (Vec<Option<u32>>, Vec<Option<u32>>) {
         let names = &mut new.names;
         let (old_resources, new_resources) = (names.resources(&self.plan), names.resources(&new.plan));
         let old_keys: Vec<Key> = keys(&self.flow, &self.plan, names);
         let new_keys: Vec<Key> = keys(&new.flow, &new.plan, names);
         let by_key: HashMap<Key, u32> = (0u32..).zip(&old_keys).map(|(node, key)| (*key, node)).collect();
         let mut same_step: HashMap<(usize, usize), bool> = HashMap::new();
-        let mut found = Vec::with_capacity(new_keys.len());
-        for (node, key) in new_keys.iter().enumerate() {
-            let counterpart = by_key.get(key).copied().filter(|old| {
+        let named: Vec<Option<u32>> = new_keys.iter().map(|key| by_key.get(key).copied()).collect();
+        let mut found = Vec::with_capacity(named.len());
+        for (node, old) in named.iter().enumerate() {
+            let counterpart = old.filter(|old| {
                 let steps = (self.flow.nodes[*old as usize].step as usize, new.flow.nodes[node].step as usize);
                 let same = *same_step
                     .entry(steps)
@@ -113,11 +115,33 @@ impl Tracker {
             });
             found.push(counterpart);
         }
-        found
+        (named, found)
+    }
+
+    /// Remembered resources whose last values others leave than before: they change without anybody being due.
+    fn find_remade(&self, new: &mut Tracker, resources: &[Option<ResourceId>]) {
+        let keys = |tracker: &Tracker, source: u32| {
+            let source = &tracker.flow.sources[source as usize];
+            let name = |node: &u32| {
+                let node = tracker.flow.nodes[*node as usize];
+                (tracker.plan.steps[node.step as usize].name.clone(), node.iteration)
+            };
+            let mut makers: Vec<_> = source.makers.iter().map(name).collect();
+            makers.sort_unstable();
+            (makers, source.unmade)
+        };
+        for (resource, source) in &new.flow.recalled {
+            let old = resources.get(*resource as usize).copied().flatten();
+            let before = old.and_then(|old| Some((old, *self.flow.recalled.get(&old.0)?)));
+            let remade = before.is_some_and(|(old, before)| self.remade.contains(&old) || keys(self, before) != keys(new, *source));
+            if remade {
+                new.remade.insert(ResourceId(*resource));
+            }
+        }
     }
 
     /// Pieces that are still what the same nodes left.
-    fn keep_pieces(&self, new: &mut Tracker, resources: &[Option<ResourceId>], memories: &[Option<MemoryId>], nodes: &[Option<u32>]) {
+    fn keep_pieces(&self, new: &mut Tracker, resources: &[Option<ResourceId>], memories: &[Option<MemoryId>], named: &[Option<u32>]) {
         let stays = |new: &Tracker, resource: ResourceId| -> Option<ResourceId> {
             let placement = new.plan.resources[resource.index()].placement?;
             memories[placement.memory.index()]?;
@@ -128,7 +152,7 @@ impl Tracker {
             let Some(old_resource) = stays(new, entry.resource) else { continue };
             // A changed pass runs again anyway; what matters is who wrote, whether or not in the same way.
             let mut writers = new.flow.units.of(entry.unit as usize).iter().filter(|node| new.writes(**node, entry.resource));
-            let old_unit = |node: &u32| nodes[*node as usize].map(|old| self.flow.unit_of[old as usize]);
+            let old_unit = |node: &u32| named[*node as usize].map(|old| self.flow.unit_of[old as usize]);
             let Some(unit) = writers.clone().next().and_then(old_unit) else { continue };
             let all_same = writers.all(|node| old_unit(node) == Some(unit));
             let old = self.flow.unit_pieces.of(unit as usize).iter().find(|old| self.flow.pieces[**old as usize].resource == old_resource);
@@ -151,31 +175,27 @@ impl Tracker {
     }
 
     /// What nodes last ran on, and whose turn it is.
-    fn keep_states(&self, new: &mut Tracker, nodes: &[Option<u32>]) {
+    fn keep_states(&self, new: &mut Tracker, named: &[Option<u32>], nodes: &[Option<u32>]) {
         let known = input_places(&self.plan.inputs);
         for (place, input) in new.plan.inputs.iter().enumerate() {
             new.seen[place] = known.get(input).and_then(|old| self.seen[*old]);
         }
+        // Whoever waits goes on waiting, even for something else.
         let mut turns: BTreeMap<u32, Turn> = BTreeMap::new();
-        for (node, old) in nodes.iter().enumerate() {
-            let Some(old) = *old else { continue };
-            if self.fresh.contains(&old) {
-                continue;
+        for (node, old) in (0u32..).zip(named) {
+            let before = old.and_then(|old| self.turns.get(&self.flow.unit_of[old as usize]));
+            if let (Run::Spread { .. }, Some(turn)) = (new.flow.nodes[node as usize].run, before) {
+                turns.insert(new.flow.unit_of[node as usize], *turn);
             }
-            let node = node as u32;
+        }
+        for (node, old) in (0u32..).zip(nodes) {
+            let Some(old) = old.filter(|old| !self.fresh.contains(old)) else { continue };
             new.fresh.remove(&node);
             if self.recalling.contains(&old) {
                 new.recalling.insert(node);
             }
-            match new.flow.nodes[node as usize].run {
-                Run::Accumulate(_) => {
-                    new.gathered.insert(node, self.gathered.get(&old).copied().unwrap_or(0));
-                }
-                Run::Spread { .. } => {
-                    let (unit, before) = (new.flow.unit_of[node as usize], self.flow.unit_of[old as usize]);
-                    turns.insert(unit, self.turns.get(&before).copied().unwrap_or_default());
-                }
-                _ => {}
+            if let Run::Accumulate(_) = new.flow.nodes[node as usize].run {
+                new.gathered.insert(node, self.gathered.get(&old).copied().unwrap_or(0));
             }
         }
         for (unit, turn) in turns {
@@ -222,9 +242,12 @@ impl Tracker {
                 },
                 _ => Remembered::Gone,
             };
-            if past != Remembered::Here || old.is_none_or(|(_, before)| before != Remembered::Here) {
-                let recallers = new.flow.recallers.of(resource.index()).to_vec();
-                new.recalling.extend(recallers);
+            // What was there is there no more. What is carried has not changed.
+            if old.is_some_and(|(old, _)| self.first.contains(&old)) {
+                new.first.insert(resource);
+            }
+            if past == Remembered::Gone && old.is_some_and(|(_, before)| before != Remembered::Gone) {
+                new.recall_first(resource);
             }
             new.past.insert(resource, past);
         }

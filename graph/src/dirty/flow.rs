@@ -121,6 +121,8 @@ pub(super) struct Flow {
     pub(super) amortised: Lists,
     /// By output: its source.
     pub(super) outputs: Vec<u32>,
+    /// By resource that is remembered: the source that all of it is.
+    pub(super) recalled: BTreeMap<u32, u32>,
 }
 
 /// What a flow is built from.
@@ -143,6 +145,7 @@ struct Builder {
     /// By (node, resource): the cells whose last value it leaves.
     left: BTreeMap<(u32, u32), Vec<Rect>>,
     outputs: Vec<u32>,
+    recalled: BTreeMap<u32, u32>,
     /// Two nodes that both leave a cell, and its resource.
     shared: Vec<((u32, u32), u32)>,
 }
@@ -208,7 +211,7 @@ impl Flow {
 
     fn finish(&mut self, builder: Builder, input: &FlowInput<'_>, recalls: Vec<(u32, u32)>) {
         let count = self.nodes.len();
-        let Builder { mut sources, reads, feeds, modifiers, joins, left, outputs, shared } = builder;
+        let Builder { mut sources, reads, feeds, modifiers, joins, left, outputs, shared, recalled } = builder;
         self.join(&joins, input);
         let mut piece_of: HashMap<(u32, u32), u32> = HashMap::new();
         for ((node, resource), rects) in left {
@@ -249,6 +252,7 @@ impl Flow {
         self.modified = numbered(modifiers.iter().map(|(before, after)| (*after, *before)).collect(), count);
         self.modifiers = numbered(modifiers, count);
         self.outputs = outputs;
+        self.recalled = recalled;
         self.sources = sources;
         self.find_cycles(&recalls);
     }
@@ -406,6 +410,10 @@ impl Builder {
         for used in uses.iter().filter(|used| used.used.role == Role::Read) {
             let source = self.source(resource, &used.rect, used.used.version, &cells, &chains, &mut known);
             self.reads.push((used.node, source));
+        }
+        for used in uses.iter().filter(|used| used.used.role == Role::Recall) {
+            let source = self.source(resource, &used.rect, None, &cells, &chains, &mut known);
+            self.recalled.insert(resource.0, source);
         }
         for (output, rect) in shown {
             self.outputs[output as usize] = self.source(resource, rect, None, &cells, &chains, &mut known);

@@ -10,7 +10,7 @@ use super::flow::Flow;
 use super::tracker::{Tracker, overlap};
 use super::{Frame, Why};
 use crate::expand::types::{ClearValue, ResourceId};
-use crate::plan::PartView;
+use crate::plan::{PartView, Role, Use};
 
 /// What somebody relies on to be still there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -145,6 +145,9 @@ impl<'a> Pull<'a> {
     }
 
     fn need_declared(&mut self, resource: ResourceId, reader: Option<usize>) {
+        if self.tracker.plan.resources[resource.index()].clear.is_none() {
+            return;
+        }
         if self.tracker.held.declared[resource.index()] && !self.is_taken(resource) {
             self.rely(resource, Relied::Declared, reader);
         } else {
@@ -224,7 +227,9 @@ impl<'a> Pull<'a> {
             }
         }
         for (resource, fills) in wanted {
-            let touches = |step: usize| self.tracker.plan.steps[step].uses.iter().any(|used| used.resource == resource);
+            // What the last frame left is remembered before it is filled.
+            let uses = |used: &Use| used.resource == resource && used.role != Role::Recall;
+            let touches = |step: usize| self.tracker.plan.steps[step].uses.iter().any(uses);
             match frame.runs.iter_mut().find(|run| touches(run.step)) {
                 Some(run) => run.fills.extend(fills),
                 None if self.ends.contains(&resource) => frame.last_fills.extend(fills),

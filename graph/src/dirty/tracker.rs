@@ -8,7 +8,7 @@ use super::flow::{Flow, FlowInput};
 use super::maker::Names;
 use super::{Frame, Idle, Remembered};
 use crate::expand::types::{ClearValue, OnResize, ResourceId, Run};
-use crate::plan::{Input, PartView, Plan, PlannedShape, Step};
+use crate::plan::{Input, PartView, Plan, PlannedShape, Step, StepKind};
 use crate::schedule::part::Rect;
 
 /// Where content is. Only [`Tracker::commit`], [`Tracker::fail`], [`Tracker::lose`] and [`Tracker::adopt`] change it.
@@ -56,6 +56,10 @@ pub struct Tracker {
     pub(super) recalling: BTreeSet<u32>,
     /// By resource that is remembered: where its value of the frame before is.
     pub(super) past: BTreeMap<ResourceId, Remembered>,
+    /// Remembered resources whose histories hold the first value.
+    pub(super) first: BTreeSet<ResourceId>,
+    /// Remembered resources that others make than in the frame before.
+    pub(super) remade: BTreeSet<ResourceId>,
     /// Of what backends carry: the shape.
     pub(super) carried: BTreeMap<String, PlannedShape>,
     /// Something that must be there at the end of a frame may be missing.
@@ -94,6 +98,8 @@ impl Tracker {
             waiting: BTreeSet::new(),
             recalling: BTreeSet::new(),
             past,
+            first: BTreeSet::new(),
+            remade: BTreeSet::new(),
             carried: BTreeMap::new(),
             ends_open: true,
             frames: 0,
@@ -144,11 +150,22 @@ impl Tracker {
                 }
             }
         }
+        for run in &frame.runs {
+            if let (Some(remembered), StepKind::Remember { source, .. }) = (run.remembered, &self.plan.steps[run.step].kind) {
+                match remembered {
+                    Remembered::Gone => self.first.insert(source.resource),
+                    Remembered::Here | Remembered::Carried => self.first.remove(&source.resource),
+                };
+            }
+        }
         for (resource, past) in &mut self.past {
-            if *past != Remembered::Here {
+            if *past == Remembered::Gone {
                 self.recalling.extend(self.flow.recallers.of(resource.index()));
             }
             *past = Remembered::Here;
+        }
+        for resource in std::mem::take(&mut self.remade) {
+            self.recalling.extend(self.flow.recallers.of(resource.index()));
         }
         self.carried.clear();
         self.ends_open = false;
@@ -168,7 +185,7 @@ impl Tracker {
             self.evict(resource);
             if let Some(past) = self.past.get_mut(&resource).filter(|past| **past == Remembered::Here) {
                 *past = Remembered::Gone;
-                self.recalling.extend(self.flow.recallers.of(resource.index()));
+                self.recall_first(resource);
             }
         }
         self.start_unheld_anew();
@@ -179,6 +196,18 @@ impl Tracker {
     pub fn lose(&mut self) {
         let frames = self.frames;
         *self = Tracker { frames, ..Tracker::new(Arc::clone(&self.plan)) };
+    }
+
+    /// The steps of a frame, with their iterations, whose values change: they are due. All others only run for their sake.
+    pub fn changed(&self, frame: &Frame) -> Vec<(usize, Option<u32>)> {
+        let nodes = frame.changed.iter().map(|node| self.flow.nodes[*node as usize]);
+        nodes.map(|node| (node.step as usize, node.iteration)).collect()
+    }
+
+    /// The unit of a step, or of its iteration: whatever has the same number runs together.
+    pub fn unit(&self, step: usize, iteration: Option<u32>) -> u32 {
+        let node = self.flow.of_step(step).start + iteration.unwrap_or(0);
+        self.flow.unit_of[node as usize]
     }
 
     /// Why a step did not run in the last frame, if it did not.
@@ -283,16 +312,21 @@ impl Tracker {
         self.held.unheld_amortised = unheld.map(|(at, _)| at).collect();
     }
 
-    /// Amortised units whose content is lost, and histories that are, start again.
+    /// What a resource held in the frame before is lost: its history changes to the first value, unless it has that already.
+    pub(super) fn recall_first(&mut self, resource: ResourceId) {
+        for recaller in self.flow.recallers.of(resource.index()) {
+            if self.first.contains(&resource) {
+                self.recalling.remove(recaller);
+            } else {
+                self.recalling.insert(*recaller);
+            }
+        }
+    }
+
+    /// Amortised units whose content is lost start again.
     pub(super) fn start_unheld_anew(&mut self) {
         for piece in &self.held.unheld_amortised {
             self.fresh.extend(self.flow.units.of(self.flow.pieces[*piece as usize].unit as usize));
-        }
-        for node in self.past.keys().flat_map(|resource| self.flow.recallers.of(resource.index())) {
-            let unit = self.flow.unit_of[*node as usize] as usize;
-            if self.flow.unit_pieces.of(unit).iter().any(|piece| !self.held.pieces[*piece as usize]) {
-                self.recalling.insert(*node);
-            }
         }
     }
 

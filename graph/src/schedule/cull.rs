@@ -50,7 +50,7 @@ pub(crate) fn culled(bound: &Bound, dag: &Dag, alive: &[bool]) -> Vec<Culled> {
             resources.dedup();
             resources
         };
-        let writes = touched(|role| role != Role::Read);
+        let writes = touched(super::versions::writes);
         let users = users(dag, NodeIndex::new(index));
         let reason = match (writes.is_empty(), users.is_empty()) {
             (true, _) => CullReason::WritesNothing,

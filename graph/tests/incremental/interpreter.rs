@@ -1,0 +1,488 @@
+//! What a pipeline means, told in the simplest way: every frame evaluates everything by plain recursion, no memory is shared, and
+//! nothing is known of plans, orders or revisions. Only the rules of Accumulate and Spread are kept, by comparing values.
+
+use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::hash::{DefaultHasher, Hash, Hasher};
+
+use luminaire_graph::expand::types::{OnResize, Run};
+
+use super::spec::{INPUTS, Part, PassSpec, Spec};
+
+/// The declared value, and the first value of histories.
+pub const DECLARED: u64 = 1;
+
+pub fn hash(parts: impl Hash) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    parts.hash(&mut hasher);
+    hasher.finish()
+}
+
+/// A pass, or one iteration of a batched one.
+pub type Node = (usize, Option<u32>);
+
+/// What a node makes of what it sees; both the interpreter and the simulation compute it.
+pub fn made(
+    pass: &PassSpec,
+    iteration: Option<u32>,
+    accumulated: u32,
+    frame: u64,
+    revisions: &[u64],
+    reads: &[u64],
+    layer: u32,
+    old: u64,
+    shapes: u64,
+) -> u64 {
+    // Whoever runs unasked makes something new each time.
+    let frame = if pass.run == Run::OnChange { 0 } else { frame };
+    let mut inputs: Vec<u64> = pass.inputs.iter().map(|input| revisions[*input as usize]).collect();
+    inputs.extend(iteration.map(|iteration| revisions[(iteration % INPUTS) as usize]));
+    hash((&pass.name, pass.salt, iteration, accumulated, frame, inputs, reads, layer, old, shapes))
+}
+
+/// The shapes of all that a pass touches.
+pub fn shapes(spec: &Spec, pass: &PassSpec) -> u64 {
+    let shape = |part: &Part| {
+        let resource = &spec.resources[part.resource];
+        (resource.name.clone(), resource.edge, resource.layers, resource.buffer, resource.clear, part.layer)
+    };
+    hash(pass.reads.iter().chain(&pass.writes).chain(&pass.modifies).map(shape).collect::<Vec<_>>())
+}
+
+/// A value where only a part of the old one has a place.
+pub fn cropped(old: u64) -> u64 {
+    hash(("cropped", old))
+}
+
+type Shape = (u32, u32, bool);
+
+/// What outlasts a frame.
+#[derive(Debug, Clone, Default)]
+pub struct Interpreter {
+    pub frames: u64,
+    /// What amortised passes left, by resource and layer.
+    kept: HashMap<(String, u32), u64>,
+    gathered: HashMap<String, u32>,
+    turns: BTreeMap<(u32, u32), (u32, u64)>,
+    /// What entered the cycle of each amortised node.
+    entered: HashMap<(String, Option<u32>), u64>,
+    past: HashMap<String, (Shape, Vec<u64>)>,
+}
+
+/// A frame as it should be.
+pub struct Meaning {
+    values: HashMap<(usize, u32, Option<usize>), u64>,
+    befores: HashMap<(usize, u32, usize), u64>,
+    next: Interpreter,
+    /// Amortised nodes that run, with the number of the run.
+    pub amortised: BTreeMap<Node, u32>,
+}
+
+impl Meaning {
+    /// The value of a cell, as a pass left it or in the end.
+    pub fn at(&self, resource: usize, layer: u32, version: Option<usize>) -> Option<u64> {
+        self.values.get(&(resource, layer, version)).copied()
+    }
+}
+
+impl Interpreter {
+    /// The device is lost.
+    pub fn lose(&mut self) {
+        *self = Interpreter { frames: self.frames, ..Interpreter::default() };
+    }
+
+    /// The content of these resources is lost, and of `past` what they held in the frame before.
+    pub fn forget(&mut self, spec: &Spec, resources: &BTreeSet<String>, past: &BTreeSet<String>) {
+        for name in past {
+            self.past.remove(name);
+        }
+        for pass in spec.passes.iter().filter(|pass| !matches!(pass.run, Run::OnChange | Run::EveryFrame)) {
+            if pass.writes.iter().chain(&pass.modifies).any(|part| resources.contains(&spec.resources[part.resource].name)) {
+                self.entered.retain(|(name, _), _| *name != pass.name);
+            }
+        }
+        self.kept.retain(|(name, _), _| !resources.contains(name));
+    }
+
+    /// Passes that stand no more are forgotten.
+    pub fn keep_only(&mut self, spec: &Spec, alive: &BTreeSet<String>) {
+        let standing = |key: &(u32, u32)| {
+            spec.passes.iter().filter(|pass| alive.contains(&pass.name)).any(|pass| match pass.run {
+                Run::Spread { spread, iteration } => spread == key.0 && (pass.batch > 0 || iteration == key.1),
+                _ => false,
+            })
+        };
+        self.turns.retain(|key, _| standing(key));
+        self.entered.retain(|(name, _), _| alive.contains(name));
+        self.gathered.retain(|name, _| alive.contains(name));
+        self.past.retain(|name, _| alive.contains(&format!("previous({name})")));
+    }
+
+    pub fn submitted(&mut self, meaning: Meaning) {
+        *self = meaning.next;
+    }
+
+    /// Evaluates a frame in which the passes `alive` stand.
+    pub fn frame(&self, spec: &Spec, alive: &BTreeSet<String>, revisions: &[u64]) -> Meaning {
+        let graph = Graph::new(spec, alive);
+        let mut runs: BTreeMap<Node, u32> = BTreeMap::new();
+        let mut restarted: BTreeSet<Node> = BTreeSet::new();
+        for node in graph.amortised() {
+            let name = &spec.passes[node.0].name;
+            if let Run::Accumulate(count) = spec.passes[node.0].run {
+                let gathered = self.gathered.get(name).copied().unwrap_or(0);
+                if gathered < count {
+                    runs.insert(node, gathered);
+                }
+            }
+        }
+        let mut turns = self.turns.clone();
+        self.restart(&graph, revisions, &mut runs, &mut restarted);
+        for spread in 0..spec.spreads.len() as u32 {
+            for node in &restarted {
+                call(&mut turns, spec, *node, self.frames);
+            }
+            let mut waiting: Vec<(u64, u32)> = Vec::new();
+            for ((own, iteration), (remaining, since)) in &turns {
+                if *own == spread && *remaining > 0 {
+                    waiting.push((*since, *iteration));
+                }
+            }
+            waiting.sort_unstable();
+            for (_, iteration) in waiting.into_iter().take(spec.spreads[spread as usize].0 as usize) {
+                for node in graph.amortised().filter(|node| turn_of(spec, *node) == Some((spread, iteration))) {
+                    runs.insert(node, 0);
+                }
+            }
+            self.restart(&graph, revisions, &mut runs, &mut restarted);
+        }
+        for node in &restarted {
+            call(&mut turns, spec, *node, self.frames);
+        }
+        let mut eval = Eval { graph: &graph, state: self, revisions, runs: &runs, memo: HashMap::new() };
+        let mut next = self.clone();
+        next.frames += 1;
+        for ran in runs.keys().filter_map(|node| turn_of(spec, *node)).collect::<BTreeSet<_>>() {
+            let turn = turns.entry(ran).or_default();
+            turn.0 = turn.0.saturating_sub(1);
+            turn.1 = self.frames + 1;
+        }
+        next.turns = turns;
+        let (mut values, mut befores) = (HashMap::new(), HashMap::new());
+        for (index, resource) in spec.resources.iter().enumerate() {
+            let mut all = Vec::new();
+            for layer in 0..resource.layers {
+                let chain = graph.chain(index, layer);
+                for (place, makers) in chain.iter().enumerate() {
+                    let value = eval.version(index, layer, place);
+                    values.insert((index, layer, Some(makers[0].0)), value);
+                    if let Some(before) = place.checked_sub(1) {
+                        befores.insert((index, layer, makers[0].0), eval.version(index, layer, before));
+                    }
+                }
+                let last = eval.last(index, layer);
+                values.insert((index, layer, None), last);
+                all.push(last);
+                if chain.iter().flatten().any(|node| graph.is_amortised(*node)) {
+                    next.kept.insert((resource.name.clone(), layer), last);
+                }
+            }
+            if alive.contains(&format!("previous({})", resource.name)) {
+                next.past.insert(resource.name.clone(), ((resource.edge, resource.layers, resource.buffer), all));
+            }
+        }
+        for node in graph.amortised() {
+            let entered = eval.entered(node);
+            next.entered.insert((spec.passes[node.0].name.clone(), node.1), entered);
+            if matches!(spec.passes[node.0].run, Run::Accumulate(_)) {
+                let gathered = self.gathered.get(&spec.passes[node.0].name).copied().unwrap_or(0);
+                next.gathered.insert(spec.passes[node.0].name.clone(), runs.get(&node).map_or(gathered, |number| number + 1));
+            }
+        }
+        Meaning { values, befores, next, amortised: runs }
+    }
+
+    /// Whoever sees something else enter its cycle starts again.
+    fn restart(&self, graph: &Graph<'_>, revisions: &[u64], runs: &mut BTreeMap<Node, u32>, restarted: &mut BTreeSet<Node>) {
+        loop {
+            let mut eval = Eval { graph, state: self, revisions, runs, memo: HashMap::new() };
+            let changed: Vec<Node> = graph
+                .amortised()
+                .filter(|node| !restarted.contains(node))
+                .filter(|node| {
+                    let known = self.entered.get(&(graph.spec.passes[node.0].name.clone(), node.1));
+                    known != Some(&eval.entered(*node))
+                })
+                .collect();
+            // All of a cycle start again together.
+            let all: Vec<Node> = graph
+                .amortised()
+                .filter(|node| !restarted.contains(node) && changed.iter().any(|other| graph.same_cycle(*node, *other)))
+                .collect();
+            if all.is_empty() {
+                return;
+            }
+            for node in all {
+                restarted.insert(node);
+                if let Run::Accumulate(count) = graph.spec.passes[node.0].run
+                    && count > 0
+                {
+                    runs.insert(node, 0);
+                }
+            }
+        }
+    }
+}
+
+fn turn_of(spec: &Spec, node: Node) -> Option<(u32, u32)> {
+    match spec.passes[node.0].run {
+        Run::Spread { spread, iteration } => Some((spread, node.1.unwrap_or(iteration))),
+        _ => None,
+    }
+}
+
+fn call(turns: &mut BTreeMap<(u32, u32), (u32, u64)>, spec: &Spec, node: Node, now: u64) {
+    if let Some(key) = turn_of(spec, node) {
+        let turn = turns.entry(key).or_default();
+        if turn.0 == 0 {
+            turn.1 = now;
+        }
+        turn.0 = spec.spreads[key.0 as usize].1;
+    }
+}
+
+/// Who makes what, from the words of the file alone.
+struct Graph<'a> {
+    spec: &'a Spec,
+    nodes: Vec<Node>,
+    chains: HashMap<(usize, u32), Vec<Vec<Node>>>,
+    /// Whether one node reaches another, through the past too.
+    reach: HashMap<Node, BTreeSet<Node>>,
+}
+
+impl<'a> Graph<'a> {
+    fn new(spec: &'a Spec, alive: &BTreeSet<String>) -> Graph<'a> {
+        let mut graph = Graph { spec, nodes: Vec::new(), chains: HashMap::new(), reach: HashMap::new() };
+        for (index, pass) in spec.passes.iter().enumerate().filter(|(_, pass)| !pass.off && alive.contains(&pass.name)) {
+            match pass.batch {
+                0 => graph.nodes.push((index, None)),
+                count => graph.nodes.extend((0..count).map(|iteration| (index, Some(iteration)))),
+            }
+        }
+        for modifies in [false, true] {
+            for node in graph.nodes.clone() {
+                let pass = &spec.passes[node.0];
+                for part in if modifies { &pass.modifies } else { &pass.writes } {
+                    for layer in layers(spec, part, node.1) {
+                        graph.chains.entry((part.resource, layer)).or_default().push(vec![node]);
+                    }
+                }
+            }
+        }
+        let mut edges: HashMap<Node, BTreeSet<Node>> = HashMap::new();
+        for node in graph.nodes.clone() {
+            let pass = &spec.passes[node.0];
+            for part in &pass.reads {
+                for layer in layers(spec, part, None) {
+                    let makers = graph.seen(part, layer).map(|place| graph.chain(part.resource, layer)[place].clone());
+                    for maker in makers.into_iter().flatten() {
+                        edges.entry(maker).or_default().insert(node);
+                    }
+                }
+            }
+            if let Some(of) = pass.remembers {
+                for layer in 0..spec.resources[of].layers {
+                    for maker in graph.chain(of, layer).iter().flatten() {
+                        edges.entry(*maker).or_default().insert(node);
+                    }
+                }
+            }
+            for other in graph.nodes.iter().filter(|other| turn_of(spec, node).is_some() && turn_of(spec, node) == turn_of(spec, **other)) {
+                edges.entry(node).or_default().insert(*other);
+            }
+        }
+        for chain in graph.chains.values() {
+            for pair in chain.windows(2) {
+                for before in &pair[0] {
+                    edges.entry(*before).or_default().extend(&pair[1]);
+                }
+            }
+        }
+        for node in graph.nodes.clone() {
+            let mut found = BTreeSet::new();
+            let mut open = vec![node];
+            while let Some(at) = open.pop() {
+                for next in edges.get(&at).into_iter().flatten() {
+                    if found.insert(*next) {
+                        open.push(*next);
+                    }
+                }
+            }
+            graph.reach.insert(node, found);
+        }
+        graph
+    }
+
+    fn chain(&self, resource: usize, layer: u32) -> &[Vec<Node>] {
+        self.chains.get(&(resource, layer)).map_or(&[], Vec::as_slice)
+    }
+
+    /// The place in the chain of what a part shows.
+    fn seen(&self, part: &Part, layer: u32) -> Option<usize> {
+        let chain = self.chain(part.resource, layer);
+        match part.version {
+            None => chain.len().checked_sub(1),
+            Some(version) => chain.iter().position(|makers| makers[0].0 == version),
+        }
+    }
+
+    fn is_amortised(&self, node: Node) -> bool {
+        matches!(self.spec.passes[node.0].run, Run::Accumulate(_) | Run::Spread { .. })
+    }
+
+    fn amortised(&self) -> impl Iterator<Item = Node> + '_ {
+        self.nodes.iter().copied().filter(|node| self.is_amortised(*node))
+    }
+
+    fn same_cycle(&self, a: Node, b: Node) -> bool {
+        a == b || (self.reach[&a].contains(&b) && self.reach[&b].contains(&a))
+    }
+}
+
+/// The layers of a part, or of an iteration's.
+pub fn layers(spec: &Spec, part: &Part, iteration: Option<u32>) -> Vec<u32> {
+    match part.layer.or(iteration) {
+        Some(layer) => vec![layer],
+        None => (0..spec.resources[part.resource].layers).collect(),
+    }
+}
+
+/// What a reader of a part notices: a history is remembered whole.
+pub fn noticed(spec: &Spec, part: &Part) -> Part {
+    let whole = spec.resources[part.resource].history.is_some();
+    Part { layer: part.layer.filter(|_| !whole), ..*part }
+}
+
+struct Eval<'a> {
+    graph: &'a Graph<'a>,
+    state: &'a Interpreter,
+    revisions: &'a [u64],
+    runs: &'a BTreeMap<Node, u32>,
+    memo: HashMap<(usize, u32, usize), u64>,
+}
+
+impl Eval<'_> {
+    fn last(&mut self, resource: usize, layer: u32) -> u64 {
+        match self.graph.chain(resource, layer).len() {
+            0 => DECLARED,
+            count => self.version(resource, layer, count - 1),
+        }
+    }
+
+    fn version(&mut self, resource: usize, layer: u32, place: usize) -> u64 {
+        if let Some(known) = self.memo.get(&(resource, layer, place)) {
+            return *known;
+        }
+        let graph = self.graph;
+        let node = graph.chain(resource, layer)[place][0];
+        let pass = &graph.spec.passes[node.0];
+        let name = &graph.spec.resources[resource].name;
+        let kept = self.state.kept.get(&(name.clone(), layer)).copied().unwrap_or(DECLARED);
+        let value = if let Some(of) = pass.remembers {
+            self.remembered(resource, of, layer)
+        } else if graph.is_amortised(node) && !self.runs.contains_key(&node) {
+            kept
+        } else {
+            let number = self.runs.get(&node).copied().unwrap_or(0);
+            let accumulates = matches!(pass.run, Run::Accumulate(_));
+            let modifies = pass.modifies.iter().any(|part| part.resource == resource);
+            let old = match place.checked_sub(1) {
+                Some(before) => self.version(resource, layer, before),
+                None if modifies && accumulates && number > 0 => kept,
+                None if modifies || pass.partial => DECLARED,
+                None => 0,
+            };
+            let reads = self.reads(pass);
+            made(pass, node.1, number, self.state.frames, self.revisions, &reads, layer, old, shapes(graph.spec, pass))
+        };
+        self.memo.insert((resource, layer, place), value);
+        value
+    }
+
+    fn reads(&mut self, pass: &PassSpec) -> Vec<u64> {
+        let mut found = Vec::new();
+        for part in &pass.reads {
+            for layer in layers(self.graph.spec, part, None) {
+                found.push(match self.graph.seen(part, layer) {
+                    Some(place) => self.version(part.resource, layer, place),
+                    None => DECLARED,
+                });
+            }
+        }
+        found
+    }
+
+    fn remembered(&self, history: usize, of: usize, layer: u32) -> u64 {
+        let (spec, of) = (self.graph.spec, &self.graph.spec.resources[of]);
+        match self.state.past.get(&of.name) {
+            Some((shape, cells)) if *shape == (of.edge, of.layers, of.buffer) => cells[layer as usize],
+            Some((shape, cells)) if shape.2 == of.buffer => match spec.resources[history].history {
+                Some((_, OnResize::Crop)) => cells.get(layer as usize).map_or(DECLARED, |cell| cropped(*cell)),
+                _ => DECLARED,
+            },
+            _ => DECLARED,
+        }
+    }
+
+    /// Everything from outside that enters the cycle of a node.
+    fn entered(&mut self, node: Node) -> u64 {
+        let graph = self.graph;
+        let members: Vec<Node> = graph.nodes.iter().copied().filter(|other| graph.same_cycle(node, *other)).collect();
+        let mut found: Vec<u64> = Vec::new();
+        for member in members {
+            let pass = &graph.spec.passes[member.0];
+            let inputs: Vec<u64> = pass.inputs.iter().map(|input| self.revisions[*input as usize]).collect();
+            let own = member.1.map(|iteration| self.revisions[(iteration % INPUTS) as usize]);
+            found.push(hash((&pass.name, pass.salt, member.1, pass.partial, shapes(graph.spec, pass), inputs, own)));
+            for part in pass.reads.iter().map(|part| noticed(graph.spec, part)) {
+                let part = &part;
+                for layer in layers(graph.spec, part, None) {
+                    let value = match graph.seen(part, layer) {
+                        Some(place) => {
+                            let maker = graph.chain(part.resource, layer)[place][0];
+                            if graph.same_cycle(maker, node) {
+                                hash((&graph.spec.passes[maker.0].name, maker.1))
+                            } else {
+                                self.version(part.resource, layer, place)
+                            }
+                        }
+                        None => DECLARED,
+                    };
+                    found.push(value);
+                }
+            }
+            for part in &pass.modifies {
+                for layer in layers(graph.spec, part, member.1) {
+                    let place = graph.chain(part.resource, layer).iter().position(|makers| makers.contains(&member));
+                    if let Some(before) = place.and_then(|place| place.checked_sub(1)) {
+                        let maker = graph.chain(part.resource, layer)[before][0];
+                        found.push(if graph.same_cycle(maker, node) { 0 } else { self.version(part.resource, layer, before) });
+                    }
+                }
+            }
+        }
+        hash(found)
+    }
+}
+
+impl Meaning {
+    /// The value that a pass modifies.
+    pub fn before(&self, resource: usize, layer: u32, pass: usize) -> Option<u64> {
+        self.befores.get(&(resource, layer, pass)).copied()
+    }
+
+    /// All values, with passes by name.
+    pub fn named(&self, spec: &Spec) -> HashMap<(usize, u32, Option<String>), u64> {
+        let name = |pass: usize| spec.passes[pass].name.clone();
+        self.values.iter().map(|((resource, layer, version), value)| ((*resource, *layer, version.map(name)), *value)).collect()
+    }
+}
