@@ -7,11 +7,9 @@ use crate::allocate::Allocation;
 use crate::bind::types::Bound;
 use crate::expand::types::{PassId, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
-use crate::plan::{
-    BindingTarget, InputId, MemoryKind, PartView, Plan, PlannedOutput, PlannedResource, PlannedShape, Role, Step, StepKind, Use,
-};
-use crate::schedule::Schedule;
+use crate::plan::{BindingTarget, InputId, MemoryKind, Plan, PlannedOutput, PlannedResource, PlannedShape, Step, StepKind};
 use crate::schedule::part::Rect;
+use crate::schedule::{InitialClear, Schedule};
 
 /// Builds the plan. `extent` is the width and height of the rendered image.
 ///
@@ -33,13 +31,9 @@ pub fn assemble(
     for (place, pass) in schedule.order.iter().enumerate() {
         place_of[pass.index()] = Some(place);
     }
-    for (pass, part, value) in schedule.initial_clears {
+    for InitialClear { pass, part, value, .. } in schedule.initial_clears.into_iter().filter(|initial| initial.modified) {
         if let Some(step) = place_of[pass.index()].and_then(|place| steps.get_mut(place)) {
-            // Under a modifier it is set whenever the modifier runs. What only readers see is set when it is not held.
-            let modified = step.uses.iter().any(|used| used.role == Role::Modify && used.resource == part.resource && touches(used, &part));
-            if modified {
-                step.clears.push((part, value));
-            }
+            step.clears.push((part, value));
         }
     }
     keep_used(&mut steps, &mut shaders, &mut views, &mut draw_lists, &mut inputs, &mut retained_for);
@@ -108,11 +102,6 @@ pub fn assemble(
     };
     debug_assert_eq!(plan.self_check(), Vec::<String>::new());
     plan
-}
-
-/// Whether a use and a part have something in common.
-fn touches(used: &Use, part: &PartView) -> bool {
-    Rect::new(&used.mips, &used.layers).intersection(&Rect::new(&part.mips, &part.layers)).is_some()
 }
 
 /// Drops what no step names, and renumbers.

@@ -8,7 +8,7 @@ use crate::bind::types::Bound;
 use crate::expand::types::PassId;
 use crate::lists::Lists;
 use crate::plan::Retained;
-use crate::schedule::Schedule;
+use crate::schedule::{InitialClear, Schedule};
 
 /// When each resource is in use, by resource id.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -27,7 +27,7 @@ pub fn lifetimes(bound: &Bound, schedule: &Schedule, retained: Vec<Option<Retain
     for (place, pass) in schedule.order.iter().enumerate() {
         places[pass.index()] = Some(place);
     }
-    for (pass, part, _) in &schedule.initial_clears {
+    for InitialClear { pass, part, .. } in &schedule.initial_clears {
         if let (Some(place), Some(range)) = (places[pass.index()], ranges.get_mut(part.resource.index())) {
             // Whoever touches it first fills what it needs; only what nobody touches needs a place of its own.
             if Range::is_empty(range) {

@@ -105,7 +105,7 @@ fn declared_value_fills_what_nothing_produces_before_its_first_use() {
     let clears: Vec<_> = schedule
         .initial_clears
         .iter()
-        .map(|(pass, part, _)| (graph.bound.steps[pass.index()].name.as_str(), part.mips.clone(), part.layers.clone()))
+        .map(|clear| (graph.bound.steps[clear.pass.index()].name.as_str(), clear.part.mips.clone(), clear.part.layers.clone()))
         .collect();
     assert_eq!(clears, [("b", 0..1, 0..1), ("c", 2..4, 0..1)]);
     // They are set when they are not held, not whenever the step runs.

@@ -148,8 +148,8 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
             add(part.resource, clear(part));
         }
     }
-    for (_, part, _) in &schedule.initial_clears {
-        add(part.resource, clear(part));
+    for initial in &schedule.initial_clears {
+        add(initial.part.resource, clear(&initial.part));
     }
     for output in &bound.expanded.outputs {
         // The host reads outputs back, and a viewer samples them.

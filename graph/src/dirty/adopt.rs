@@ -148,21 +148,31 @@ impl Tracker {
             new.held.residents[placement.memory.index()].contains(&resource).then(|| resources[resource.index()]).flatten()
         };
         for piece in 0..new.flow.pieces.len() {
-            let entry = &new.flow.pieces[piece];
-            let Some(old_resource) = stays(new, entry.resource) else { continue };
+            let (piece_unit, piece_resource) = (new.flow.pieces[piece].unit, new.flow.pieces[piece].resource);
             // A changed pass runs again anyway; what matters is who wrote, whether or not in the same way.
-            let mut writers = new.flow.units.of(entry.unit as usize).iter().filter(|node| new.writes(**node, entry.resource));
+            let writers: Vec<u32> =
+                new.flow.units.of(piece_unit as usize).iter().copied().filter(|node| new.writes(*node, piece_resource)).collect();
             let old_unit = |node: &u32| named[*node as usize].map(|old| self.flow.unit_of[old as usize]);
-            let Some(unit) = writers.clone().next().and_then(old_unit) else { continue };
-            let all_same = writers.all(|node| old_unit(node) == Some(unit));
+            let Some(unit) = writers.first().and_then(old_unit) else { continue };
+            let lost = self
+                .flow
+                .unit_pieces
+                .of(unit as usize)
+                .iter()
+                .find(|old| resources[piece_resource.index()] == Some(self.flow.pieces[**old as usize].resource));
+            if lost.is_some_and(|old| self.flow.is_amortised(unit) && !self.held.unseen.contains(old)) {
+                new.held.unseen.remove(&(piece as u32));
+            }
+            let Some(old_resource) = stays(new, piece_resource) else { continue };
+            let all_same = writers.iter().all(|node| old_unit(node) == Some(unit));
             let old = self.flow.unit_pieces.of(unit as usize).iter().find(|old| self.flow.pieces[**old as usize].resource == old_resource);
             let held = old.is_some_and(|old| {
                 let count = |tracker: &Tracker, unit: u32, resource| {
                     tracker.flow.units.of(unit as usize).iter().filter(|node| tracker.writes(**node, resource)).count()
                 };
                 self.held.pieces[*old as usize]
-                    && self.flow.pieces[*old as usize].rects == entry.rects
-                    && count(self, unit, old_resource) == count(new, entry.unit, entry.resource)
+                    && self.flow.pieces[*old as usize].rects == new.flow.pieces[piece].rects
+                    && count(self, unit, old_resource) == count(new, piece_unit, piece_resource)
             });
             new.held.pieces[piece] = all_same && held;
         }
@@ -212,6 +222,7 @@ impl Tracker {
         let remembered: Vec<ResourceId> = new.past.keys().copied().collect();
         for resource in remembered {
             let planned = &new.plan.resources[resource.index()];
+            let planned_name = planned.name.clone();
             let on_resize = Tracker::on_resize(&new.plan, resource);
             let serves = |shape: &PlannedShape| {
                 same_shape(shape, &planned.shape) || (on_resize == OnResize::Crop && same_kind(shape, &planned.shape))
@@ -248,6 +259,11 @@ impl Tracker {
             }
             if past == Remembered::Gone && old.is_some_and(|(_, before)| before != Remembered::Gone) {
                 new.recall_first(resource);
+            }
+            // The overlap of another extent is not yet what the resource holds now.
+            let shape = new.carried.get(&planned_name);
+            if past == Remembered::Carried && shape.is_some_and(|shape| !same_shape(shape, &new.plan.resources[resource.index()].shape)) {
+                new.remade.insert(resource);
             }
             new.past.insert(resource, past);
         }

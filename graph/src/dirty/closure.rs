@@ -54,6 +54,16 @@ impl<'a> Closure<'a> {
                 }
             }
         }
+        // Whoever gathers what others make now starts again.
+        for node in tracker.remade.iter().flat_map(|resource| self.flow.recallers.of(resource.index())) {
+            self.enter(*node);
+        }
+        // Content that is lost becomes the declared value, until its turn comes.
+        for piece in tracker.held.unheld_amortised.difference(&tracker.held.unseen) {
+            for node in self.flow.units.of(self.flow.pieces[*piece as usize].unit as usize) {
+                self.carry(*node);
+            }
+        }
         for node in &tracker.always {
             self.reach(*node, Why::EveryFrame, false);
         }
@@ -73,13 +83,20 @@ impl<'a> Closure<'a> {
         self.finish()
     }
 
-    /// A change reaches a node; from outside of its cycle or from within.
-    fn reach(&mut self, node: u32, why: Why, outside: bool) {
+    /// A change from outside reaches the cycle of a node.
+    fn enter(&mut self, node: u32) {
         let cycle = self.flow.cycle_of[node as usize];
-        if outside && self.cycles.insert(cycle) {
+        if self.cycles.insert(cycle) {
             for member in self.flow.amortised.of(cycle as usize) {
                 self.restart(*member);
             }
+        }
+    }
+
+    /// A change reaches a node; from outside of its cycle or from within.
+    fn reach(&mut self, node: u32, why: Why, outside: bool) {
+        if outside {
+            self.enter(node);
         }
         if !matches!(self.flow.nodes[node as usize].run, Run::Accumulate(_) | Run::Spread { .. }) {
             self.change(node, why);
@@ -113,27 +130,32 @@ impl<'a> Closure<'a> {
     /// Carries changes on to readers and modifiers.
     fn spread(&mut self) {
         while let Some(node) = self.open.pop() {
-            let cycle = self.flow.cycle_of[node as usize];
-            let step = self.flow.nodes[node as usize].step as usize;
-            for source in self.flow.feeds.of(node as usize) {
-                let resource = self.flow.sources[*source as usize].resource;
-                // A second maker tells a reader something new only if it stands in another cycle.
-                let known = self.sources.get(source).copied();
-                if known.is_some_and(|(first, both)| both || first == cycle) {
-                    continue;
-                }
-                self.sources.insert(*source, known.map_or((cycle, false), |(first, _)| (first, true)));
-                for reader in self.flow.readers.of(*source as usize) {
-                    let outside = self.flow.cycle_of[*reader as usize] != cycle;
-                    self.reach(*reader, Why::Reads { step, resource }, outside);
-                }
+            self.carry(node);
+        }
+    }
+
+    /// Tells readers and modifiers that what a node leaves is another.
+    fn carry(&mut self, node: u32) {
+        let cycle = self.flow.cycle_of[node as usize];
+        let step = self.flow.nodes[node as usize].step as usize;
+        for source in self.flow.feeds.of(node as usize) {
+            let resource = self.flow.sources[*source as usize].resource;
+            // A second maker tells a reader something new only if it stands in another cycle.
+            let known = self.sources.get(source).copied();
+            if known.is_some_and(|(first, both)| both || first == cycle) {
+                continue;
             }
-            for modifier in self.flow.modifiers.of(node as usize) {
-                let outside = self.flow.cycle_of[*modifier as usize] != cycle;
-                let resource = self.tracker.plan.steps[step].uses.iter().find(|used| crate::schedule::writes(used.role));
-                let resource = resource.map_or(ResourceId(0), |used| used.resource);
-                self.reach(*modifier, Why::Reads { step, resource }, outside);
+            self.sources.insert(*source, known.map_or((cycle, false), |(first, _)| (first, true)));
+            for reader in self.flow.readers.of(*source as usize) {
+                let outside = self.flow.cycle_of[*reader as usize] != cycle;
+                self.reach(*reader, Why::Reads { step, resource }, outside);
             }
+        }
+        for modifier in self.flow.modifiers.of(node as usize) {
+            let outside = self.flow.cycle_of[*modifier as usize] != cycle;
+            let resource = self.tracker.plan.steps[step].uses.iter().find(|used| crate::schedule::writes(used.role));
+            let resource = resource.map_or(ResourceId(0), |used| used.resource);
+            self.reach(*modifier, Why::Reads { step, resource }, outside);
         }
     }
 

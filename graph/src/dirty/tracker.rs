@@ -22,6 +22,8 @@ pub(super) struct Held {
     pub(super) residents: Vec<Vec<ResourceId>>,
     /// Pieces of amortised units that are not held: they are filled, never pulled.
     pub(super) unheld_amortised: BTreeSet<u32>,
+    /// Pieces of amortised units of which nobody has seen but the declared value.
+    pub(super) unseen: BTreeSet<u32>,
 }
 
 /// The turn of an iteration of a spread loop.
@@ -90,6 +92,7 @@ impl Tracker {
                 declared: vec![false; plan.resources.len()],
                 residents: vec![Vec::new(); plan.memories.len()],
                 unheld_amortised: BTreeSet::new(),
+                unseen: (0u32..).zip(&flow.pieces).filter(|(_, piece)| flow.is_amortised(piece.unit)).map(|(at, _)| at).collect(),
             },
             names: Names::default(),
             always,
@@ -249,6 +252,7 @@ impl Tracker {
                     // The last of the unit's steps leaves the value; until then nobody relies on it.
                     self.held.pieces[*piece as usize] = true;
                     self.held.unheld_amortised.remove(piece);
+                    self.held.unseen.remove(piece);
                 }
             }
         }
@@ -266,6 +270,7 @@ impl Tracker {
         for piece in self.flow.resource_pieces.of(resource.index()) {
             if self.held.unheld_amortised.remove(piece) {
                 self.held.pieces[*piece as usize] = true;
+                self.held.unseen.insert(*piece);
             }
         }
     }

@@ -2,20 +2,21 @@
 
 use std::collections::BTreeMap;
 
+use super::InitialClear;
 use super::part::{Rect, merged};
 use super::versions::{Grid, UseRef};
 use crate::bind::types::Bound;
-use crate::expand::types::{ClearValue, PassId, ResourceId};
-use crate::plan::PartView;
+use crate::expand::types::{PassId, ResourceId};
 
 /// All implicit clears, by the place of their step in the order, then by resource and part.
-pub(crate) fn initial_clears(bound: &Bound, grids: &[Grid], order: &[PassId]) -> Vec<(PassId, PartView, ClearValue)> {
+pub(crate) fn initial_clears(bound: &Bound, grids: &[Grid], order: &[PassId]) -> Vec<InitialClear> {
     let mut places: Vec<Option<usize>> = vec![None; bound.steps.len()];
     for (place, pass) in order.iter().enumerate() {
         places[pass.index()] = Some(place);
     }
     let place_of = |used: &UseRef| places[used.pass.index()];
-    let mut needed: BTreeMap<(usize, usize), Vec<Rect>> = BTreeMap::new();
+    // By step, resource, and whether it is modified: what is modified and what is not stay apart.
+    let mut needed: BTreeMap<(usize, usize, bool), Vec<Rect>> = BTreeMap::new();
     for (index, grid) in grids.iter().enumerate() {
         if bound.expanded.resources[index].clear.is_none() {
             continue;
@@ -36,18 +37,24 @@ pub(crate) fn initial_clears(bound: &Bound, grids: &[Grid], order: &[PassId]) ->
                 need(*cell, [shown, reader].into_iter().flatten().min());
             }
         }
+        if let Some(recaller) = grid.recallers.iter().filter_map(place_of).min() {
+            for cell in (0..grid.cells.len()).filter(|cell| grid.cells[*cell].writers.is_empty()) {
+                need(cell, Some(recaller));
+            }
+        }
         for (cell, place) in first.iter().enumerate() {
             if let Some(place) = place {
-                needed.entry((*place, index)).or_default().push(grid.cells[cell].rect.clone());
+                let modified = !grid.cells[cell].writers.is_empty();
+                needed.entry((*place, index, modified)).or_default().push(grid.cells[cell].rect.clone());
             }
         }
     }
     let mut clears = Vec::new();
-    for ((place, index), rects) in needed {
+    for ((place, index, modified), rects) in needed {
         let resource = &bound.expanded.resources[index];
         let Some(value) = resource.clear else { continue };
         for rect in merged(rects) {
-            clears.push((order[place], rect.view(ResourceId(index as u32), &resource.shape), value));
+            clears.push(InitialClear { pass: order[place], part: rect.view(ResourceId(index as u32), &resource.shape), value, modified });
         }
     }
     clears

@@ -27,6 +27,19 @@ use crate::expand::types::{ClearValue, PassId};
 use crate::plan::{Culled, PartView, Retained};
 use flow::Flow;
 
+/// A part that nothing produces and that is used all the same.
+#[derive(Debug, Clone, PartialEq)]
+pub struct InitialClear {
+    /// The first step that uses it.
+    pub pass: PassId,
+    /// Which.
+    pub part: PartView,
+    /// The declared value.
+    pub value: ClearValue,
+    /// The step modifies it: it gets the declared value whenever the step runs, and not only when it is not held.
+    pub modified: bool,
+}
+
 /// What runs, in order, and what does not.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct Schedule {
@@ -36,9 +49,8 @@ pub struct Schedule {
     pub declared: Vec<PassId>,
     /// The passes that do not run, in the order of the file.
     pub culled: Vec<Culled>,
-    /// Parts that nothing produces and that are used all the same, with the step before which they get their declared value.
-    /// In the order of the steps.
-    pub initial_clears: Vec<(PassId, PartView, ClearValue)>,
+    /// Parts that nothing produces, in the order of the steps that use them first.
+    pub initial_clears: Vec<InitialClear>,
     /// What waits for what among the passes that run.
     pub flow: Flow,
     /// What memory planning knows of the pipeline.

@@ -20,6 +20,7 @@ pub(crate) fn problems(bound: &Bound, grids: &[Grid]) -> Vec<Diagnostic> {
             wrong_versions(bound, grid, region, resource, &mut found);
             outputs(bound, grid, region, resource, &mut found);
         }
+        unmade_past(bound, grid, resource, &mut found);
         unread(bound, grid, resource, &mut found);
     }
     for step in &bound.steps {
@@ -99,6 +100,21 @@ fn unwritten_reads(bound: &Bound, grid: &Grid, region: &Region, resource: &Resou
             .hint("add a pass that writes it, or `clear:` with the value that it has where nothing writes it"),
         );
     }
+}
+
+/// What is remembered has to be something, all of it.
+fn unmade_past(bound: &Bound, grid: &Grid, resource: &Resource, found: &mut Vec<Diagnostic>) {
+    let rects: Vec<Rect> = grid.cells.iter().filter(|cell| cell.writers.is_empty()).map(|cell| cell.rect.clone()).collect();
+    let Some(recaller) = grid.recallers.first().filter(|_| !rects.is_empty() && resource.clear.is_none()) else { return };
+    found.push(
+        Diagnostic::error(
+            "schedule::nothing-to-remember",
+            format!("the past of {} is read, and nothing produces it", part::names(rects, resource)),
+        )
+        .at(resource.span, "it declares no `clear` value")
+        .and(recaller.get(bound).span, "remembered here")
+        .hint("add a pass that writes it, or `clear:` with the value that it has where nothing writes it"),
+    );
 }
 
 fn wrong_versions(bound: &Bound, grid: &Grid, region: &Region, resource: &Resource, found: &mut Vec<Diagnostic>) {

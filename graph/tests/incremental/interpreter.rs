@@ -8,8 +8,10 @@ use luminaire_graph::expand::types::{OnResize, Run};
 
 use super::spec::{INPUTS, Part, PassSpec, Spec};
 
-/// The declared value, and the first value of histories.
+/// The declared value.
 pub const DECLARED: u64 = 1;
+/// The first value of histories.
+pub const FIRST: u64 = 2;
 
 pub fn hash(parts: impl Hash) -> u64 {
     let mut hasher = DefaultHasher::new();
@@ -426,10 +428,10 @@ impl Eval<'_> {
         match self.state.past.get(&of.name) {
             Some((shape, cells)) if *shape == (of.edge, of.layers, of.buffer) => cells[layer as usize],
             Some((shape, cells)) if shape.2 == of.buffer => match spec.resources[history].history {
-                Some((_, OnResize::Crop)) => cells.get(layer as usize).map_or(DECLARED, |cell| cropped(*cell)),
-                _ => DECLARED,
+                Some((_, OnResize::Crop)) => cells.get(layer as usize).map_or(FIRST, |cell| cropped(*cell)),
+                _ => FIRST,
             },
-            _ => DECLARED,
+            _ => FIRST,
         }
     }
 

@@ -36,6 +36,11 @@ use spec::{Choices, INPUTS, Spec, random};
 
 /// `None` where the pipeline is wrong, as when a producer is off and no value is declared.
 fn plan_of(spec: &Spec) -> Option<Arc<Plan>> {
+    // A version of a pass that does not stand is an error of an earlier step.
+    let mut versions = spec.passes.iter().filter(|pass| !pass.off).flat_map(|pass| &pass.reads).filter_map(|read| read.version);
+    if versions.any(|version| spec.passes[version].off) {
+        return None;
+    }
     let bound = spec.bound();
     let device = DeviceFacts { memory_budget: u64::MAX, ..DeviceFacts::webgpu_defaults() };
     let kept = retention(&bound);
@@ -157,8 +162,8 @@ impl World {
                 }
             }
             8 => {
-                let count = spec.resources.iter().filter(|resource| resource.history.is_none()).count();
-                spec.outputs = vec![choose.below(count.min(spec.resources.len()))];
+                let shown: Vec<usize> = (0..spec.resources.len()).filter(|index| spec.resources[*index].history.is_none()).collect();
+                spec.outputs = vec![shown[choose.below(shown.len())]];
                 self.replan(spec)?;
             }
             9 => {

@@ -8,7 +8,7 @@ use luminaire_graph::execute::Backend;
 use luminaire_graph::expand::types::{ClearValue, ResourceId};
 use luminaire_graph::plan::{MemoryId, MemoryKind, PartView, Plan, PlannedShape, Role, StepKind};
 
-use super::interpreter::{DECLARED, cropped, layers, made, shapes};
+use super::interpreter::{DECLARED, FIRST, cropped, layers, made, shapes};
 use super::spec::Spec;
 
 #[derive(Debug, Clone, Default)]
@@ -141,9 +141,9 @@ impl Simulation {
                         let (edge, cells) = self.carried.get(&name).cloned().unwrap_or_default();
                         let cell = cells.get(layer as usize).copied();
                         let same = edge == edge_of(plan, target.resource) && cells.len() == target.layers.len();
-                        cell.map_or(DECLARED, |cell| if same { cell } else { cropped(cell) })
+                        cell.map_or(FIRST, |cell| if same { cell } else { cropped(cell) })
                     }
-                    Some(Remembered::Gone) | None => DECLARED,
+                    Some(Remembered::Gone) | None => FIRST,
                 };
                 self.store(plan, target.resource, layer, content);
             }
