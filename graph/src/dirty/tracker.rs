@@ -233,7 +233,7 @@ impl Tracker {
     fn occupy(&mut self, frame: &Frame) {
         for run in &frame.runs {
             for (part, _) in &run.fills {
-                self.fill(part.resource);
+                self.fill(part.resource, frame);
             }
             let nodes = self.flow.of_step(run.step);
             let ran: Vec<u32> = match run.iterations.as_slice() {
@@ -257,16 +257,16 @@ impl Tracker {
             }
         }
         for (part, _) in &frame.last_fills {
-            self.fill(part.resource);
-        }
-        for resource in &frame.filled {
-            self.held.declared[*resource as usize] = true;
+            self.fill(part.resource, frame);
         }
     }
 
     /// A declared value is set in a resource: in parts that nothing makes, and in those of amortised units that have not run.
-    fn fill(&mut self, resource: ResourceId) {
+    fn fill(&mut self, resource: ResourceId, frame: &Frame) {
         self.settle(resource);
+        if frame.filled.contains(&resource.0) {
+            self.held.declared[resource.index()] = true;
+        }
         for piece in self.flow.resource_pieces.of(resource.index()) {
             if self.held.unheld_amortised.remove(piece) {
                 self.held.pieces[*piece as usize] = true;

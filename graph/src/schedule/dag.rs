@@ -59,8 +59,11 @@ pub(crate) fn dag(bound: &Bound, grids: &[Grid]) -> Dag {
         // The past is remembered before anything touches it.
         for recaller in &grid.recallers {
             let span = recaller.get(bound).span;
-            for writer in grid.cells.iter().flat_map(|cell| &cell.writers) {
-                edges.add(recaller.pass.index(), writer.pass.index(), Dependency { reason: Reason::Destroys, resource, span });
+            let writers = grid.cells.iter().flat_map(|cell| &cell.writers);
+            // Before its first reader a part that nothing makes is filled.
+            let fillers = grid.regions.iter().filter(|region| !region.unwritten.is_empty()).flat_map(|region| &region.readers);
+            for later in writers.chain(fillers) {
+                edges.add(recaller.pass.index(), later.pass.index(), Dependency { reason: Reason::Destroys, resource, span });
             }
         }
         for region in &grid.regions {

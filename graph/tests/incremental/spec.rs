@@ -87,12 +87,19 @@ fn pass(name: String) -> PassSpec {
     }
 }
 
+/// What may stand in a pipeline.
+#[derive(Debug, Clone, Copy)]
+pub struct Kinds {
+    pub history: bool,
+    pub amortised: bool,
+}
+
 /// Built along a time line: what a pass reads stands before it, but for the past.
-pub fn random(choose: &mut Choices<'_>) -> Spec {
+pub fn random(choose: &mut Choices<'_>, kinds: Kinds) -> Spec {
     let mut spec = Spec::default();
     let count = 3 + choose.below(8);
     // The past of some, which anybody may read.
-    let remembered: Vec<bool> = (0..count).map(|_| choose.chance(15)).collect();
+    let remembered: Vec<bool> = (0..count).map(|_| choose.chance(15) && kinds.history).collect();
     for index in 0..count {
         let buffer = choose.chance(20);
         spec.resources.push(ResourceSpec {
@@ -121,8 +128,8 @@ pub fn random(choose: &mut Choices<'_>) -> Spec {
     }
     for index in 0..count {
         match choose.below(10) {
-            0 => accumulating(&mut spec, choose, index, &histories),
-            1 => spreading(&mut spec, choose, index, &histories),
+            0 if kinds.amortised => accumulating(&mut spec, choose, index, &histories),
+            1 if kinds.amortised => spreading(&mut spec, choose, index, &histories),
             _ => on_change(&mut spec, choose, index, &histories),
         }
     }
