@@ -4,6 +4,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use luminaire_graph::compile::{Compilation, CompileInput, compile};
+use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
@@ -112,6 +113,8 @@ pub struct Session {
     /// Warnings of the compilation and the publishing.
     pub warnings: Problems,
     executor: Executor,
+    camera: Option<String>,
+    facts: DeviceFacts,
 }
 
 impl Session {
@@ -153,7 +156,14 @@ impl Session {
             Executor::new(&gpu, Arc::clone(&plan), &published, Arc::new(scene))
         });
         match made {
-            Ok(executor) => Ok(Session { plan, adapter: adapter.name().to_owned(), warnings: (diagnostics, sources), executor }),
+            Ok(executor) => Ok(Session {
+                plan,
+                adapter: adapter.name().to_owned(),
+                warnings: (diagnostics, sources),
+                executor,
+                camera: request.camera.map(str::to_owned),
+                facts,
+            }),
             Err(problems) => {
                 diagnostics.extend(problems);
                 debug_assert!(has_errors(&diagnostics));
@@ -165,6 +175,67 @@ impl Session {
     /// Renders a frame.
     pub fn render_frame(&mut self) -> Result<FrameStats, Problems> {
         self.executor.render_frame().map_err(|problems| (problems, self.warnings.1.clone()))
+    }
+
+    /// Takes the world's present state over. What did not change will not run again.
+    pub fn update(&mut self, world: &mut World) -> Result<(), Problems> {
+        let plan = Arc::clone(&self.plan);
+        let request = PublishRequest {
+            camera: self.camera.as_deref(),
+            extent: plan.extent,
+            views: &plan.views,
+            draw_lists: &plan.draw_lists,
+            max_texture_2d: self.facts.max_texture_2d,
+        };
+        let published = publish(world, &request).and_then(|published| self.executor.update_scene(Arc::new(published.scene)));
+        published.map_err(|problems| (problems, self.warnings.1.clone()))
+    }
+
+    /// Whether some pass runs in every frame, so that the image never settles.
+    pub fn never_settles(&self) -> bool {
+        self.executor.never_settles()
+    }
+
+    /// The passes that ran in the last frame, in order.
+    pub fn ran(&self) -> Vec<&str> {
+        self.executor.ran()
+    }
+
+    /// Why each pass ran in the last frame or did not.
+    pub fn explain(&self, pass: Option<&str>) -> String {
+        self.executor.explain(pass)
+    }
+
+    /// Compiles again, for a changed file, parameter, size or output, and turns to the new plan. What is the same stays held, and
+    /// pipelines that did not change are not built again. After an error the last good plan goes on.
+    pub fn reload(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<(), Problems> {
+        let (published, counts) = (schema(), counts(world));
+        let compilation = compile_pipeline(&CompileInput {
+            pipeline: request.pipeline,
+            files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
+            published: &published,
+            counts: &counts,
+            device: &self.facts,
+            output: request.size,
+            sets: request.sets,
+            outputs: request.outputs,
+        });
+        let (diagnostics, sources) = (compilation.diagnostics, compilation.sources);
+        let Some(plan) = compilation.plan else { return Err((diagnostics, sources)) };
+        let plan = Arc::new(plan);
+        let publish_request = PublishRequest {
+            camera: request.camera,
+            extent: request.size,
+            views: &plan.views,
+            draw_lists: &plan.draw_lists,
+            max_texture_2d: self.facts.max_texture_2d,
+        };
+        let adopted =
+            publish(world, &publish_request).and_then(|published| self.executor.adopt(Arc::clone(&plan), Arc::new(published.scene)));
+        adopted.map_err(|problems| (problems, sources.clone()))?;
+        self.camera = request.camera.map(str::to_owned);
+        (self.plan, self.warnings) = (plan, (diagnostics, sources));
+        Ok(())
     }
 
     /// Reads an output as a linear image.

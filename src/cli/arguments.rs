@@ -65,9 +65,9 @@ pub(crate) struct RenderArguments {
     /// The pipeline's output to write, instead of `color` or `radiance`
     #[arg(long, value_name = "NAME")]
     pub output: Option<String>,
-    /// How many frames to render before the image is taken
-    #[arg(long, default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
-    pub frames: u32,
+    /// How many frames to render before the image is taken; until nothing changes any more, if not given
+    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
+    pub frames: Option<u32>,
     /// Write times per pass, memory figures and counts as JSON
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,

@@ -18,6 +18,9 @@ use crate::files::DiskFiles;
 use crate::image_file::{ImageFormat, check_writable, write_file, write_image};
 use crate::session::{LoadedScene, Problems, RenderRequest, Session, compile_pipeline, load_scene};
 
+/// Frames after which a pipeline that still changes is rendered no longer.
+const SETTLED_AFTER: u32 = 100_000;
+
 pub(super) fn run(arguments: &RenderArguments) -> bool {
     match render(arguments) {
         Ok(()) => true,
@@ -45,13 +48,26 @@ fn render(arguments: &RenderArguments) -> Result<(), Problems> {
         memory_budget: Some(arguments.memory_budget.saturating_mul(1 << 20)),
     };
     let mut session = Session::new(&mut world, &request)?;
+    if arguments.frames.is_none() && session.never_settles() {
+        let message = format!("`{}` has a pass that runs in every frame, so that the image never settles", arguments.pipeline);
+        return Err((vec![Diagnostic::error("render::every-frame", message).hint("say how many: --frames 64")], SourceMap::default()));
+    }
     progress.report(&session.warnings.0, &session.warnings.1);
 
     let started = Instant::now();
     let mut last = FrameStats::default();
-    for frame in 0..arguments.frames {
-        progress.frame(frame, arguments.frames);
-        last = session.render_frame()?;
+    let mut frames = 0;
+    while frames < arguments.frames.unwrap_or(SETTLED_AFTER) {
+        progress.frame(frames, arguments.frames);
+        let frame = session.render_frame()?;
+        if frame.settled && arguments.frames.is_none() {
+            break;
+        }
+        // What a frame without work cost says nothing of the image.
+        if !frame.settled {
+            last = frame;
+        }
+        frames += 1;
     }
     let image = session.read_output(&output)?;
     let elapsed = started.elapsed();
@@ -59,7 +75,7 @@ fn render(arguments: &RenderArguments) -> Result<(), Problems> {
     let nowhere = |problem: Diagnostic| (vec![problem], SourceMap::default());
     write_image(&arguments.file, &image).map_err(nowhere)?;
     if let Some(path) = &arguments.stats {
-        let text = format!("{:#}\n", stats(&session, &last, arguments, elapsed));
+        let text = format!("{:#}\n", stats(&session, &last, frames, arguments, elapsed));
         write_file(path, text.as_bytes()).map_err(nowhere)?;
     }
     progress.done();
@@ -104,7 +120,7 @@ fn output_name(arguments: &RenderArguments) -> Result<String, Problems> {
     }
 }
 
-fn stats(session: &Session, frame: &FrameStats, arguments: &RenderArguments, elapsed: Duration) -> Value {
+fn stats(session: &Session, frame: &FrameStats, frames: u32, arguments: &RenderArguments, elapsed: Duration) -> Value {
     let figures = session.plan.figures;
     let placed = session.plan.placed();
     let passes: Vec<Value> = match &frame.times {
@@ -116,7 +132,7 @@ fn stats(session: &Session, frame: &FrameStats, arguments: &RenderArguments, ela
         "scene": arguments.scene,
         "adapter": session.adapter,
         "size": session.plan.extent,
-        "frames": arguments.frames,
+        "frames": frames,
         "seconds": elapsed.as_secs_f64(),
         "passes": passes,
         "memory_bytes": {
@@ -156,8 +172,9 @@ impl Progress {
         self.bar.set_message(what);
     }
 
-    fn frame(&self, frame: u32, frames: u32) {
-        if frame == 0
+    fn frame(&self, frame: u32, frames: Option<u32>) {
+        if let Some(frames) = frames
+            && frame == 0
             && frames > 1
             && let Ok(style) = ProgressStyle::with_template("{msg} {bar:40} {pos}/{len} {eta}")
         {

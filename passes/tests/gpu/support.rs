@@ -5,8 +5,8 @@ use std::sync::Arc;
 use luminaire_graph::expand::types::{ClearValue, Dimension, PassId, ResourceId, Run, TextureShape};
 use luminaire_graph::format::Format;
 use luminaire_graph::plan::{
-    Binding, BindingTarget, ColorTarget, Load, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Plan, PlannedOutput,
-    PlannedResource, PlannedShape, SampleType, Stages, Step, StepKind, Targets, Usage, Workgroups,
+    Binding, BindingTarget, ColorTarget, Input, InputId, Load, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Plan,
+    PlannedOutput, PlannedResource, PlannedShape, SampleType, Stages, Step, StepKind, Targets, Usage, Workgroups,
 };
 use luminaire_graph::published::{PublishedScene, PublishedSchema};
 use luminaire_graph::reflect::interface::{Shader, ViewDimension};
@@ -152,7 +152,27 @@ impl Builder {
                 let place = global.and_then(|(_, global)| global.binding).expect("a variable");
                 Binding { group: place.group, binding: place.binding, variable: variable.to_owned(), stages, target }
             })
-            .collect();
+            .collect::<Vec<Binding>>();
+        let mut inputs = Vec::new();
+        let mut takes = |input: Input| {
+            let known = self.plan.inputs.iter().position(|known| *known == input);
+            let index = known.unwrap_or_else(|| {
+                self.plan.inputs.push(input);
+                self.plan.inputs.len() - 1
+            });
+            inputs.push(InputId(index as u32));
+        };
+        for binding in &bindings {
+            match &binding.target {
+                BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => takes(Input::Table(name.clone())),
+                BindingTarget::View(view) => takes(Input::View(self.plan.views[*view])),
+                _ => {}
+            }
+        }
+        if let StepKind::Draw { list, .. } = &kind {
+            let (filter, view) = self.plan.draw_lists[*list];
+            takes(Input::Draws(filter, view));
+        }
         self.plan.steps.push(Step {
             pass: PassId(self.plan.steps.len() as u32),
             name: name.to_owned(),
@@ -165,7 +185,7 @@ impl Builder {
             uses: Vec::new(),
             run: Run::OnChange,
             batch: Vec::new(),
-            inputs: Vec::new(),
+            inputs,
         });
     }
 
