@@ -65,9 +65,8 @@ impl Shot {
         self
     }
 
-    pub fn session(&self, world: &mut World) -> Result<Session, Failed> {
-        let adapter = adapter().ok_or("no adapter")?;
-        let request = RenderRequest {
+    pub fn request(&self) -> RenderRequest<'_> {
+        RenderRequest {
             pipeline: &self.pipeline,
             size: self.size,
             camera: None,
@@ -75,8 +74,12 @@ impl Shot {
             outputs: Some(&self.outputs),
             timing: false,
             memory_budget: None,
-        };
-        Session::on(adapter, world, &request).map_err(shown)
+        }
+    }
+
+    pub fn session(&self, world: &mut World) -> Result<Session, Failed> {
+        let adapter = adapter().ok_or("no adapter")?;
+        Session::on(adapter, world, &self.request()).map_err(shown)
     }
 
     /// One frame of a world.
