@@ -3,6 +3,8 @@
 //! Run with `cargo bench -p luminaire-graph --bench dirty`. The figure to look at is time per reached pass (criterion's throughput):
 //! it should not depend on how many passes the plan has.
 
+#![allow(clippy::panic)]
+
 use std::sync::Arc;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};

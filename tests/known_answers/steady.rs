@@ -80,7 +80,7 @@ fn incremental_is_full() -> Result<(), Failed> {
         Eye::new([numbers[0], numbers[1], numbers[2]], [0.0, 0.3, 0.0], 45.0).ron()
     };
     let mut scene = busy();
-    let mut shot = Shot::pbr(48, &OUTPUTS);
+    let shot = Shot::pbr(48, &OUTPUTS);
     let mut session = shot.session(&mut world(&scene)?)?;
     session.render_frame().map_err(shown)?;
     for (what, from, to, idle) in changes {
@@ -109,7 +109,6 @@ fn incremental_is_full() -> Result<(), Failed> {
         let mut fresh = next.session(&mut world)?;
         fresh.render_frame().map_err(shown)?;
         same_images(&images(&session)?, &images(&fresh)?, &format!("after a change of {what}"))?;
-        shot = next;
     }
     Ok(())
 }

@@ -183,7 +183,7 @@ impl Flow {
             recalls.extend(uses.iter().filter(|used| used.used.role == Role::Recall).map(|used| (resource as u32, used.node)));
             flow.unmade[resource] = builder.resource(ResourceId(resource as u32), uses, input);
         }
-        flow.finish(builder, input, recalls);
+        flow.finish(builder, input, &recalls);
         flow
     }
 
@@ -209,7 +209,7 @@ impl Flow {
         found
     }
 
-    fn finish(&mut self, builder: Builder, input: &FlowInput<'_>, recalls: Vec<(u32, u32)>) {
+    fn finish(&mut self, builder: Builder, input: &FlowInput<'_>, recalls: &[(u32, u32)]) {
         let count = self.nodes.len();
         let Builder { mut sources, reads, feeds, modifiers, joins, left, outputs, shared, recalled } = builder;
         self.join(&joins, input);
@@ -245,7 +245,7 @@ impl Flow {
         (self.unit_pieces, self.resource_pieces) = (unit_pieces, resource_pieces);
         self.units = numbered(self.unit_of.iter().enumerate().map(|(node, unit)| (*unit, node as u32)).collect(), units);
         self.input_readers = numbered(self.taken_inputs(input), input.inputs);
-        self.recallers = numbered(recalls.clone(), input.resources);
+        self.recallers = numbered(recalls.to_vec(), input.resources);
         self.readers = numbered(reads.iter().map(|(node, source)| (*source, *node)).collect(), sources.len());
         self.reads = numbered(reads, count);
         self.feeds = numbered(feeds, count);
@@ -254,7 +254,7 @@ impl Flow {
         self.outputs = outputs;
         self.recalled = recalled;
         self.sources = sources;
-        self.find_cycles(&recalls);
+        self.find_cycles(recalls);
     }
 
     /// Gives every node its unit, numbered by first node.
