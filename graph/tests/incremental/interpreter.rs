@@ -23,6 +23,7 @@ pub fn hash(parts: impl Hash) -> u64 {
 pub type Node = (usize, Option<u32>);
 
 /// What a node makes of what it sees; both the interpreter and the simulation compute it.
+#[allow(clippy::too_many_arguments, reason = "all that a value depends on")]
 pub fn made(
     pass: &PassSpec,
     iteration: Option<u32>,

@@ -119,9 +119,9 @@ impl Simulation {
         self.memories[memory].cells.insert(at, (content, resource));
     }
 
-    fn expect(&mut self, plan: &Plan, step: usize, resource: ResourceId, layer: u32, version: Option<String>, found: u64) {
+    fn expect(&mut self, plan: &Plan, step: usize, resource: ResourceId, layer: u32, version: Option<&String>, found: u64) {
         let name = &plan.resources[resource.index()].name;
-        let wanted = self.expected.get(&(resource.index(), layer, version.clone())).copied();
+        let wanted = self.expected.get(&(resource.index(), layer, version.cloned())).copied();
         if wanted != Some(found) {
             self.wrong.push(format!("`{}` reads {name}[{layer}] of {version:?}: {found:x}, wanted {wanted:x?}", plan.steps[step].name));
         }
@@ -156,7 +156,7 @@ impl Simulation {
             for layer in used.layers.clone() {
                 let content = self.load(plan, used.resource, layer);
                 let version = used.version.and_then(|id| plan.steps.iter().find(|step| step.pass == id)).map(|step| step.name.clone());
-                self.expect(plan, run.step, used.resource, layer, version, content);
+                self.expect(plan, run.step, used.resource, layer, version.as_ref(), content);
                 reads.push(content);
             }
         }
