@@ -159,8 +159,13 @@ fn resource(plan: &Plan, id: ResourceId) -> String {
     if resource.retained_for.is_empty() {
         return text;
     }
-    let inputs: Vec<String> = resource.retained_for.iter().map(|id| input(plan, *id)).collect();
-    format!("{text}: {} can change alone", inputs.join(", "))
+    const SHOWN: usize = 3;
+    let inputs: Vec<String> = resource.retained_for.iter().take(SHOWN).map(|id| input(plan, *id)).collect();
+    let more = match resource.retained_for.len().saturating_sub(SHOWN) {
+        0 => String::new(),
+        more => format!(" and {more} more"),
+    };
+    format!("{text}: {}{more} can change alone", inputs.join(", "))
 }
 
 /// What each input costs in retained bytes: of all resources that are retained since it can change alone.
