@@ -72,7 +72,7 @@ cargo test --quiet "${tests[@]}" > /dev/null || { echo "the tests fail without a
 mutant 'no edge from a reader to who destroys' schedule/dag.rs \
     'edges.add(reader.pass.index(), destroyer.index(), Dependency { reason: Reason::Destroys, resource, span });' 'let _ = destroyer;'
 mutant 'no edge from who remembers to writers' schedule/dag.rs \
-    'edges.add(recaller.pass.index(), writer.pass.index(), Dependency { reason: Reason::Destroys, resource, span });' 'let _ = (writer, span);'
+    'edges.add(recaller.pass.index(), later.pass.index(), Dependency { reason: Reason::Destroys, resource, span });' 'let _ = (later, span);'
 mutant 'no edge along modifiers' schedule/dag.rs 'edges.add(pair[0].pass.index(), pair[1].pass.index(), dependency);' 'let _ = dependency;'
 mutant 'what is remembered is culled' schedule/cull.rs \
     '.take_while(|(recaller, _)| *recaller == node)' '.take_while(|(recaller, _)| *recaller == node).take(0)'

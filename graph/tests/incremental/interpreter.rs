@@ -118,6 +118,12 @@ impl Interpreter {
         self.entered.retain(|(name, _), _| alive.contains(name));
         self.gathered.retain(|name, _| alive.contains(name));
         self.past.retain(|name, _| alive.contains(&format!("previous({name})")));
+        // So is what they left.
+        let makes = |pass: &PassSpec, name: &str, layer: u32| {
+            let mut parts = pass.writes.iter().chain(&pass.modifies);
+            parts.any(|part| spec.resources[part.resource].name == name && part.layer.is_none_or(|own| own == layer))
+        };
+        self.kept.retain(|(name, layer), _| spec.passes.iter().any(|pass| alive.contains(&pass.name) && makes(pass, name, *layer)));
     }
 
     pub fn submitted(&mut self, meaning: Meaning) {

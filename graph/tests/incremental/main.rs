@@ -114,7 +114,7 @@ impl World {
         let Some(plan) = plan_of(&spec) else { return Ok(()) };
         prop_assert_eq!(plan.self_check(), Vec::<String>::new());
         let adoption = self.tracker.adopt(Arc::clone(&plan));
-        self.device.adopt(&self.plan, &adoption);
+        self.device.adopt(&self.plan, &plan, &adoption);
         (self.plan, self.spec) = (plan, spec);
         execute::prepare(&self.plan, &adoption.memories, &mut self.device).map_err(|_| TestCaseError::fail("prepare"))?;
         let alive = self.alive();
@@ -200,8 +200,8 @@ impl World {
         Some((pass.name.clone(), if pass.batch > 0 { layer } else { 0 }))
     }
 
-    /// What a pass sees: all that decides its value, and who made it.
-    fn sight(&self, node: Node, meaning: &Meaning) -> u64 {
+    /// Who made what a pass sees.
+    fn makers(&self, node: Node) -> Vec<Option<(String, u32)>> {
         let pass = &self.spec.passes[node.0];
         let mut makers = Vec::new();
         for part in pass.reads.iter().filter(|part| part.version.is_none()) {
@@ -210,6 +210,13 @@ impl World {
         for part in &pass.modifies {
             makers.extend(layers(&self.spec, part, node.1).into_iter().map(|layer| self.maker(part.resource, layer, Some(node.0))));
         }
+        makers
+    }
+
+    /// What a pass sees: all that decides its value, and who made it.
+    fn sight(&self, node: Node, meaning: &Meaning) -> u64 {
+        let pass = &self.spec.passes[node.0];
+        let makers = self.makers(node);
         let mut values: Vec<u64> = pass.inputs.iter().map(|input| self.revisions[*input as usize]).collect();
         values.extend(node.1.map(|iteration| self.revisions[(iteration % INPUTS) as usize]));
         for part in &pass.reads {
@@ -275,6 +282,8 @@ impl World {
         self.log.push(format!("frame {:?} fails {:?}: {}", self.revisions, self.device.fails_after, runs.collect::<Vec<_>>().join("; ")));
         let due: BTreeSet<(usize, Option<u32>)> = self.tracker.changed(&frame).into_iter().collect();
         let mut sights = Vec::new();
+        // Whoever is due makes something new, even where it happens to be equal.
+        let mut anew: BTreeSet<(String, u32)> = BTreeSet::new();
         let mut amortised: BTreeMap<Node, u32> = BTreeMap::new();
         for (step, iteration, node) in self.nodes() {
             let pass = &self.spec.passes[node.0];
@@ -290,7 +299,14 @@ impl World {
                 Run::OnChange if pass.remembers.is_none() => {
                     let sight = self.sight(node, &meaning);
                     let known = self.seen.get(&(pass.name.clone(), iteration)).copied();
-                    prop_assert_eq!(is_due, known != Some(sight), "`{}` {:?} is due: {}", pass.name, iteration, is_due);
+                    let versions = pass.reads.iter().filter_map(|part| part.version);
+                    let versions = versions.map(|version| Some((self.spec.passes[version].name.clone(), 0)));
+                    let sees_new = self.makers(node).into_iter().chain(versions).flatten().any(|maker| anew.contains(&maker));
+                    let wanted = known != Some(sight) || sees_new;
+                    prop_assert_eq!(is_due, wanted, "`{}` {:?} is due: {}", pass.name, iteration, is_due);
+                    if wanted {
+                        anew.insert((pass.name.clone(), iteration.unwrap_or(0)));
+                    }
                     sights.push(((pass.name.clone(), iteration), sight));
                 }
                 Run::OnChange => {}
@@ -381,6 +397,11 @@ proptest! {
     #[test]
     fn spread_and_accumulate(numbers in prop::collection::vec(any::<u16>(), 30..400), changes in prop::collection::vec(any::<u16>(), 0..120)) {
         incremental_is_full(Kinds { history: false, amortised: true }, &numbers, &changes)?;
+    }
+
+    #[test]
+    fn everything(numbers in prop::collection::vec(any::<u16>(), 30..400), changes in prop::collection::vec(any::<u16>(), 0..120)) {
+        incremental_is_full(Kinds { history: true, amortised: true }, &numbers, &changes)?;
     }
 }
 

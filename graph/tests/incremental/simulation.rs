@@ -2,6 +2,7 @@
 //! so that a stale read is never right by accident.
 
 use std::collections::{BTreeSet, HashMap};
+use std::ops::Range;
 
 use luminaire_graph::dirty::{Adoption, Remembered, StepRun};
 use luminaire_graph::execute::Backend;
@@ -10,6 +11,9 @@ use luminaire_graph::plan::{MemoryId, MemoryKind, PartView, Plan, PlannedShape, 
 
 use super::interpreter::{DECLARED, FIRST, cropped, layers, made, shapes};
 use super::spec::Spec;
+
+/// Whose content is left of a plan before.
+const NOBODY: ResourceId = ResourceId(u32::MAX);
 
 #[derive(Debug, Clone, Default)]
 pub struct SimulatedMemory {
@@ -46,8 +50,8 @@ impl Simulation {
         u64::MAX - self.poison
     }
 
-    /// Moves memories as a new plan takes them over. `before` is the old plan.
-    pub fn adopt(&mut self, before: &Plan, adoption: &Adoption) {
+    /// Moves memories from one plan to the next.
+    pub fn adopt(&mut self, before: &Plan, after: &Plan, adoption: &Adoption) {
         let mut carried = HashMap::new();
         for carry in &adoption.carried {
             let content = match carry.from {
@@ -63,10 +67,19 @@ impl Simulation {
         let old = std::mem::take(&mut self.memories);
         self.memories =
             adoption.memories.iter().map(|taken| taken.map_or_else(SimulatedMemory::default, |id| old[id.index()].clone())).collect();
-        // Ids of resources belong to their plan; contents are found by place.
+        for (id, taken) in adoption.memories.iter().enumerate() {
+            let fits = taken.is_none_or(|taken| same_kind(&before.memories[taken.index()].kind, &after.memories[id].kind));
+            assert!(fits, "memory {id} is another than was taken over for it");
+        }
+        // Ids of resources belong to their plan. Content of resources that stand no more is nobody's.
+        let moved = |owner: ResourceId| {
+            let name = before.resources.get(owner.index()).map(|resource| &resource.name);
+            let place = after.resources.iter().position(|resource| Some(&resource.name) == name);
+            place.map_or(NOBODY, |place| ResourceId(place as u32))
+        };
         for memory in &mut self.memories {
             for cell in memory.cells.values_mut() {
-                cell.1 = ResourceId(u32::MAX);
+                cell.1 = moved(cell.1);
             }
         }
     }
@@ -106,8 +119,7 @@ impl Simulation {
         self.touched.insert(plan.resources[resource.index()].name.clone());
         // Somebody else lived here: nothing of that is left.
         let arena = plan.memories[memory].kind == MemoryKind::Arena;
-        let strangers =
-            |(place, owner): (&u64, &ResourceId)| *owner != resource && *owner != ResourceId(u32::MAX) && (!arena || *place == at);
+        let strangers = |(place, owner): (&u64, &ResourceId)| *owner != resource && (!arena || *place == at);
         let moved_in = self.memories[memory].cells.iter().any(|(place, (_, owner))| strangers((place, owner)));
         if moved_in {
             let places: Vec<u64> = self.memories[memory].cells.keys().copied().filter(|place| !arena || *place == at).collect();
@@ -133,14 +145,15 @@ impl Simulation {
         }
         let step = &plan.steps[run.step];
         if let StepKind::Remember { source, target, .. } = &step.kind {
-            for layer in target.layers.clone() {
+            let targets = cells(&target.mips, &target.layers);
+            for layer in targets.clone() {
                 let name = plan.resources[source.resource.index()].name.clone();
                 let content = match run.remembered {
                     Some(Remembered::Here) => self.load(plan, source.resource, layer),
                     Some(Remembered::Carried) => {
                         let (edge, cells) = self.carried.get(&name).cloned().unwrap_or_default();
                         let cell = cells.get(layer as usize).copied();
-                        let same = edge == edge_of(plan, target.resource) && cells.len() == target.layers.len();
+                        let same = edge == edge_of(plan, target.resource) && cells.len() == targets.len();
                         cell.map_or(FIRST, |cell| if same { cell } else { cropped(cell) })
                     }
                     Some(Remembered::Gone) | None => FIRST,
@@ -153,7 +166,7 @@ impl Simulation {
         let Some(pass) = spec.passes.iter().find(|pass| pass.name == step.name) else { return };
         let mut reads = Vec::new();
         for used in step.uses.iter().filter(|used| used.role == Role::Read) {
-            for layer in used.layers.clone() {
+            for layer in cells(&used.mips, &used.layers) {
                 let content = self.load(plan, used.resource, layer);
                 let version = used.version.and_then(|id| plan.steps.iter().find(|step| step.pass == id)).map(|step| step.name.clone());
                 self.expect(plan, run.step, used.resource, layer, version.as_ref(), content);
@@ -180,9 +193,24 @@ impl Simulation {
     }
 }
 
+/// The cells of a part: a texture has layers or mip levels, never several of both.
+fn cells(mips: &Range<u32>, layers: &Range<u32>) -> Vec<u32> {
+    mips.clone().flat_map(|mip| layers.clone().map(move |layer| mip + layer)).collect()
+}
+
+fn same_kind(a: &MemoryKind, b: &MemoryKind) -> bool {
+    match (a, b) {
+        (MemoryKind::Texture(a, format), MemoryKind::Texture(b, other)) => {
+            (a.width, a.height, a.layers, a.mips, format) == (b.width, b.height, b.layers, b.mips, other)
+        }
+        (MemoryKind::Arena, MemoryKind::Arena) => true,
+        _ => false,
+    }
+}
+
 fn layer_count(plan: &Plan, resource: ResourceId) -> u32 {
     match &plan.resources[resource.index()].shape {
-        PlannedShape::Texture(shape, _) => shape.layers,
+        PlannedShape::Texture(shape, _) => shape.layers * shape.mips,
         PlannedShape::Buffer(_) => 1,
     }
 }
@@ -209,7 +237,7 @@ impl Backend for Simulation {
     }
 
     fn fill(&mut self, plan: &Plan, part: &PartView, _: ClearValue) -> Result<(), &'static str> {
-        for layer in part.layers.clone() {
+        for layer in cells(&part.mips, &part.layers) {
             self.store(plan, part.resource, layer, DECLARED);
         }
         Ok(())

@@ -1,5 +1,7 @@
 //! Random pipelines and random changes of them. A choice is a number out of a list, so that a failure shrinks.
 
+use std::ops::Range;
+
 use luminaire_graph::bind::types::Bound;
 use luminaire_graph::expand::types::*;
 use luminaire_graph::format::Format;
@@ -20,6 +22,8 @@ pub struct Part {
 pub struct ResourceSpec {
     pub name: String,
     pub layers: u32,
+    /// Whether what is called layers are mip levels.
+    pub mips: bool,
     pub edge: u32,
     pub clear: bool,
     pub buffer: bool,
@@ -52,6 +56,8 @@ pub struct Spec {
     pub resources: Vec<ResourceSpec>,
     pub passes: Vec<PassSpec>,
     pub spreads: Vec<(u32, u32)>,
+    /// Bytes that the compiler may retain where it has the choice.
+    pub budget: Option<u64>,
     pub outputs: Vec<usize>,
 }
 
@@ -105,6 +111,7 @@ pub fn random(choose: &mut Choices<'_>, kinds: Kinds) -> Spec {
         spec.resources.push(ResourceSpec {
             name: format!("x{index}"),
             layers: if buffer { 1 } else { 1 + choose.below(3) as u32 },
+            mips: choose.chance(30),
             edge: 8 << choose.below(2),
             clear: choose.chance(40),
             buffer,
@@ -140,6 +147,7 @@ pub fn random(choose: &mut Choices<'_>, kinds: Kinds) -> Spec {
         remember.writes.push(Part { resource: history, layer: None, version: None });
         spec.passes.push(remember);
     }
+    spec.budget = choose.chance(20).then(|| [0, 300, 2_000][choose.below(3)]);
     spec.outputs = (0..1 + choose.below(3)).map(|_| count - 1 - choose.below(count.min(4))).collect();
     spec.outputs.sort_unstable();
     spec.outputs.dedup();
@@ -206,6 +214,7 @@ fn on_change(spec: &mut Spec, choose: &mut Choices<'_>, index: usize, histories:
                 spec.resources.push(ResourceSpec {
                     name: format!("v{seen}"),
                     layers: 1,
+                    mips: false,
                     edge: 8,
                     clear: false,
                     buffer: false,
@@ -261,9 +270,23 @@ fn spreading(spec: &mut Spec, choose: &mut Choices<'_>, index: usize, histories:
         spec.passes.push(batched);
         return;
     }
+    // Each iteration may have two passes, of which the second reads what the first makes.
+    let between = choose.chance(40).then_some(spec.resources.len());
+    if between.is_some() {
+        let name = format!("w{}", spec.resources.len());
+        spec.resources.push(ResourceSpec { name, buffer: false, ..spec.resources[index].clone() });
+    }
     for iteration in 0..layers {
         let mut part = pass(format!("p{}", spec.passes.len()));
         part.run = Run::Spread { spread, iteration };
+        if let Some(between) = between {
+            let own = Part { resource: between, layer: Some(iteration), version: None };
+            let mut first = PassSpec { writes: vec![own], ..part.clone() };
+            take(spec, choose, index, histories, &mut first);
+            spec.passes.push(first);
+            part.name = format!("p{}", spec.passes.len());
+            part.reads.push(own);
+        }
         take(spec, choose, index, histories, &mut part);
         part.writes.push(Part { resource: index, layer: Some(iteration), version: None });
         spec.passes.push(part);
@@ -300,7 +323,7 @@ impl Spec {
             resources,
             passes,
             spreads: spreads.collect(),
-            retained_budget: None,
+            retained_budget: self.budget,
             outputs: outputs.collect(),
             offered: (0..self.resources.len()).map(|index| ResourceId(index as u32)).collect(),
         };
@@ -318,6 +341,12 @@ impl Spec {
 }
 
 impl ResourceSpec {
+    /// Mip levels and layers of one of its cells, or of all.
+    fn ranges(&self, cell: Option<u32>) -> (Range<u32>, Range<u32>) {
+        let cells = cell.map_or(0..self.layers, |cell| cell..cell + 1);
+        if self.mips { (cells, 0..1) } else { (0..1, cells) }
+    }
+
     fn bound(&self) -> Resource {
         let shape = if self.buffer {
             Shape::Buffer { bytes: u64::from(self.edge) * 16 }
@@ -329,8 +358,8 @@ impl ResourceSpec {
                 width: self.edge,
                 height: 8,
                 depth: 1,
-                layers: self.layers,
-                mips: 1,
+                layers: if self.mips { 1 } else { self.layers },
+                mips: if self.mips { self.layers } else { 1 },
                 samples: 1,
             })
         };
@@ -358,11 +387,11 @@ impl PassSpec {
                 (Role::Produce, _) => Access::StorageWrite,
                 (Role::Modify, _) => Access::StorageReadWrite,
             };
-            let layers = part.layer.map_or(0..resource.layers, |layer| layer..layer + 1);
+            let (mips, layers) = resource.ranges(part.layer);
             let version = part.version.and_then(id);
             Use {
                 resource: ResourceId(part.resource as u32),
-                mips: 0..1,
+                mips,
                 layers,
                 role,
                 access,
@@ -379,11 +408,9 @@ impl PassSpec {
             .chain(self.writes.iter().map(|part| used(part, Role::Produce)))
             .chain(self.modifies.iter().map(|part| used(part, Role::Modify)))
             .collect();
-        let view = |resource: usize| PartView {
-            resource: ResourceId(resource as u32),
-            mips: 0..1,
-            layers: 0..spec.resources[resource].layers,
-            dimension: ViewDimension::D2,
+        let view = |resource: usize| {
+            let (mips, layers) = spec.resources[resource].ranges(None);
+            PartView { resource: ResourceId(resource as u32), mips, layers, dimension: ViewDimension::D2 }
         };
         let kind = match self.remembers {
             Some(of) => StepKind::Remember {
@@ -399,7 +426,12 @@ impl PassSpec {
             writes
                 .map(|used| {
                     (
-                        PartView { resource: used.resource, mips: 0..1, layers: used.layers.clone(), dimension: ViewDimension::D2 },
+                        PartView {
+                            resource: used.resource,
+                            mips: used.mips.clone(),
+                            layers: used.layers.clone(),
+                            dimension: ViewDimension::D2,
+                        },
                         ClearValue::Zero,
                     )
                 })
@@ -411,7 +443,10 @@ impl PassSpec {
             .map(|iteration| StepIteration {
                 parts: uses
                     .iter()
-                    .map(|used| (0..1, if used.role == Role::Produce { iteration..iteration + 1 } else { used.layers.clone() }))
+                    .map(|used| match used.role {
+                        Role::Produce => spec.resources[used.resource.index()].ranges(Some(iteration)),
+                        _ => (used.mips.clone(), used.layers.clone()),
+                    })
                     .collect(),
                 // Each iteration has an input of its own.
                 inputs: vec![InputId(iteration % INPUTS)],
