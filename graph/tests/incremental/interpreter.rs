@@ -2,59 +2,11 @@
 //! nothing is known of plans, orders or revisions. Only the rules of Accumulate and Spread are kept, by comparing values.
 
 use std::collections::{BTreeMap, BTreeSet, HashMap};
-use std::hash::{DefaultHasher, Hash, Hasher};
 
 use luminaire_graph::expand::types::{OnResize, Run};
 
 use super::spec::{INPUTS, Part, PassSpec, Spec};
-
-/// The declared value.
-pub const DECLARED: u64 = 1;
-/// The first value of histories.
-pub const FIRST: u64 = 2;
-
-pub fn hash(parts: impl Hash) -> u64 {
-    let mut hasher = DefaultHasher::new();
-    parts.hash(&mut hasher);
-    hasher.finish()
-}
-
-/// A pass, or one iteration of a batched one.
-pub type Node = (usize, Option<u32>);
-
-/// What a node makes of what it sees; both the interpreter and the simulation compute it.
-#[allow(clippy::too_many_arguments, reason = "all that a value depends on")]
-pub fn made(
-    pass: &PassSpec,
-    iteration: Option<u32>,
-    accumulated: u32,
-    frame: u64,
-    revisions: &[u64],
-    reads: &[u64],
-    layer: u32,
-    old: u64,
-    shapes: u64,
-) -> u64 {
-    // Whoever runs unasked makes something new each time.
-    let frame = if pass.run == Run::OnChange { 0 } else { frame };
-    let mut inputs: Vec<u64> = pass.inputs.iter().map(|input| revisions[*input as usize]).collect();
-    inputs.extend(iteration.map(|iteration| revisions[(iteration % INPUTS) as usize]));
-    hash((&pass.name, pass.salt, iteration, accumulated, frame, inputs, reads, layer, old, shapes))
-}
-
-/// The shapes of all that a pass touches.
-pub fn shapes(spec: &Spec, pass: &PassSpec) -> u64 {
-    let shape = |part: &Part| {
-        let resource = &spec.resources[part.resource];
-        (resource.name.clone(), resource.edge, resource.layers, resource.buffer, resource.clear, part.layer)
-    };
-    hash(pass.reads.iter().chain(&pass.writes).chain(&pass.modifies).map(shape).collect::<Vec<_>>())
-}
-
-/// A value where only a part of the old one has a place.
-pub fn cropped(old: u64) -> u64 {
-    hash(("cropped", old))
-}
+use super::value::{DECLARED, FIRST, Node, cropped, ground, hash, layers, made, noticed};
 
 type Shape = (u32, u32, bool);
 
@@ -262,6 +214,7 @@ fn call(turns: &mut BTreeMap<(u32, u32), (u32, u64)>, spec: &Spec, node: Node, n
 /// Who makes what, from the words of the file alone.
 struct Graph<'a> {
     spec: &'a Spec,
+    alive: &'a BTreeSet<String>,
     nodes: Vec<Node>,
     chains: HashMap<(usize, u32), Vec<Vec<Node>>>,
     /// Whether one node reaches another, through the past too.
@@ -269,8 +222,8 @@ struct Graph<'a> {
 }
 
 impl<'a> Graph<'a> {
-    fn new(spec: &'a Spec, alive: &BTreeSet<String>) -> Graph<'a> {
-        let mut graph = Graph { spec, nodes: Vec::new(), chains: HashMap::new(), reach: HashMap::new() };
+    fn new(spec: &'a Spec, alive: &'a BTreeSet<String>) -> Graph<'a> {
+        let mut graph = Graph { spec, alive, nodes: Vec::new(), chains: HashMap::new(), reach: HashMap::new() };
         for (index, pass) in spec.passes.iter().enumerate().filter(|(_, pass)| !pass.off && alive.contains(&pass.name)) {
             match pass.batch {
                 0 => graph.nodes.push((index, None)),
@@ -357,20 +310,6 @@ impl<'a> Graph<'a> {
     }
 }
 
-/// The layers of a part, or of an iteration's.
-pub fn layers(spec: &Spec, part: &Part, iteration: Option<u32>) -> Vec<u32> {
-    match part.layer.or(iteration) {
-        Some(layer) => vec![layer],
-        None => (0..spec.resources[part.resource].layers).collect(),
-    }
-}
-
-/// What a reader of a part notices: a history is remembered whole.
-pub fn noticed(spec: &Spec, part: &Part) -> Part {
-    let whole = spec.resources[part.resource].history.is_some();
-    Part { layer: part.layer.filter(|_| !whole), ..*part }
-}
-
 struct Eval<'a> {
     graph: &'a Graph<'a>,
     state: &'a Interpreter,
@@ -411,7 +350,7 @@ impl Eval<'_> {
                 None => 0,
             };
             let reads = self.reads(pass);
-            made(pass, node.1, number, self.state.frames, self.revisions, &reads, layer, old, shapes(graph.spec, pass))
+            made(pass, node.1, number, self.state.frames, self.revisions, &reads, layer, old, ground(graph.spec, graph.alive, node))
         };
         self.memo.insert((resource, layer, place), value);
         value
@@ -451,7 +390,7 @@ impl Eval<'_> {
             let pass = &graph.spec.passes[member.0];
             let inputs: Vec<u64> = pass.inputs.iter().map(|input| self.revisions[*input as usize]).collect();
             let own = member.1.map(|iteration| self.revisions[(iteration % INPUTS) as usize]);
-            found.push(hash((&pass.name, pass.salt, member.1, pass.partial, shapes(graph.spec, pass), inputs, own)));
+            found.push(hash((&pass.name, pass.salt, member.1, pass.partial, ground(graph.spec, graph.alive, member), inputs, own)));
             for part in pass.reads.iter().map(|part| noticed(graph.spec, part)) {
                 let part = &part;
                 for layer in layers(graph.spec, part, None) {

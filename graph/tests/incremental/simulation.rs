@@ -9,8 +9,8 @@ use luminaire_graph::execute::Backend;
 use luminaire_graph::expand::types::{ClearValue, ResourceId};
 use luminaire_graph::plan::{MemoryId, MemoryKind, PartView, Plan, PlannedShape, Role, StepKind};
 
-use super::interpreter::{DECLARED, FIRST, cropped, layers, made, shapes};
 use super::spec::Spec;
+use super::value::{DECLARED, FIRST, cropped, ground, layers, made};
 
 /// Whose content is left of a plan before.
 const NOBODY: ResourceId = ResourceId(u32::MAX);
@@ -163,7 +163,10 @@ impl Simulation {
             return;
         }
         let spec = self.spec.clone();
-        let Some(pass) = spec.passes.iter().find(|pass| pass.name == step.name) else { return };
+        let Some(index) = spec.passes.iter().position(|pass| pass.name == step.name) else { return };
+        let pass = &spec.passes[index];
+        let alive = plan.steps.iter().map(|step| step.name.clone()).collect();
+        let ground = ground(&spec, &alive, (index, iteration));
         let mut reads = Vec::new();
         for used in step.uses.iter().filter(|used| used.role == Role::Read) {
             for layer in cells(&used.mips, &used.layers) {
@@ -180,11 +183,7 @@ impl Simulation {
                 let id = ResourceId(part.resource as u32);
                 let modifies = pass.modifies.contains(part);
                 let old = if modifies || partial(id) { self.load(plan, id, layer) } else { 0 };
-                results.push((
-                    id,
-                    layer,
-                    made(pass, iteration, run.accumulated, self.frame, &self.revisions, &reads, layer, old, shapes(&spec, pass)),
-                ));
+                results.push((id, layer, made(pass, iteration, run.accumulated, self.frame, &self.revisions, &reads, layer, old, ground)));
             }
         }
         for (id, layer, content) in results {
