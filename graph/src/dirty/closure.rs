@@ -60,8 +60,9 @@ impl<'a> Closure<'a> {
         }
         // Content that is lost becomes the declared value, until its turn comes.
         for piece in tracker.held.unheld_amortised.difference(&tracker.held.unseen) {
-            for node in self.flow.units.of(self.flow.pieces[*piece as usize].unit as usize) {
-                self.carry(*node);
+            let piece = &self.flow.pieces[*piece as usize];
+            for node in self.flow.units.of(piece.unit as usize) {
+                self.carry(*node, Some(piece.resource));
             }
         }
         for node in &tracker.always {
@@ -130,16 +131,19 @@ impl<'a> Closure<'a> {
     /// Carries changes on to readers and modifiers.
     fn spread(&mut self) {
         while let Some(node) = self.open.pop() {
-            self.carry(node);
+            self.carry(node, None);
         }
     }
 
     /// Tells readers and modifiers that what a node leaves is another.
-    fn carry(&mut self, node: u32) {
+    fn carry(&mut self, node: u32, only: Option<ResourceId>) {
         let cycle = self.flow.cycle_of[node as usize];
         let step = self.flow.nodes[node as usize].step as usize;
         for source in self.flow.feeds.of(node as usize) {
             let resource = self.flow.sources[*source as usize].resource;
+            if only.is_some_and(|only| only != resource) {
+                continue;
+            }
             // A second maker tells a reader something new only if it stands in another cycle.
             let known = self.sources.get(source).copied();
             if known.is_some_and(|(first, both)| both || first == cycle) {
