@@ -10,6 +10,9 @@ use super::value::{DECLARED, FIRST, Node, cropped, ground, hash, layers, made, n
 
 type Shape = (u32, u32, bool);
 
+/// A node by name, and what it sees: a cell by place among its parts, or all that comes from outside of the graph.
+type Sight = (String, Option<u32>, Option<(usize, u32)>);
+
 /// What outlasts a frame.
 #[derive(Debug, Clone, Default)]
 pub struct Interpreter {
@@ -18,8 +21,8 @@ pub struct Interpreter {
     kept: HashMap<(String, u32), u64>,
     gathered: HashMap<String, u32>,
     turns: BTreeMap<(u32, u32), (u32, u64)>,
-    /// What entered the cycle of each amortised node.
-    entered: HashMap<(String, Option<u32>), u64>,
+    /// What each node saw.
+    seen: HashMap<Sight, u64>,
     past: HashMap<String, (Shape, Vec<u64>)>,
 }
 
@@ -52,7 +55,7 @@ impl Interpreter {
         }
         for pass in spec.passes.iter().filter(|pass| !matches!(pass.run, Run::OnChange | Run::EveryFrame)) {
             if pass.writes.iter().chain(&pass.modifies).any(|part| resources.contains(&spec.resources[part.resource].name)) {
-                self.entered.retain(|(name, _), _| *name != pass.name);
+                self.seen.retain(|(name, ..), _| *name != pass.name);
             }
         }
         self.kept.retain(|(name, _), _| !resources.contains(name));
@@ -67,7 +70,7 @@ impl Interpreter {
             })
         };
         self.turns.retain(|key, _| standing(key));
-        self.entered.retain(|(name, _), _| alive.contains(name));
+        self.seen.retain(|(name, ..), _| alive.contains(name));
         self.gathered.retain(|name, _| alive.contains(name));
         self.past.retain(|name, _| alive.contains(&format!("previous({name})")));
         // So is what they left.
@@ -151,9 +154,10 @@ impl Interpreter {
                 next.past.insert(resource.name.clone(), ((resource.edge, resource.layers, resource.buffer), all));
             }
         }
+        for node in &graph.nodes {
+            next.seen.extend(eval.sees(*node).into_iter().map(|(sight, value, _)| (sight, value)));
+        }
         for node in graph.amortised() {
-            let entered = eval.entered(node);
-            next.entered.insert((spec.passes[node.0].name.clone(), node.1), entered);
             if matches!(spec.passes[node.0].run, Run::Accumulate(_)) {
                 let gathered = self.gathered.get(&spec.passes[node.0].name).copied().unwrap_or(0);
                 next.gathered.insert(spec.passes[node.0].name.clone(), runs.get(&node).map_or(gathered, |number| number + 1));
@@ -166,14 +170,8 @@ impl Interpreter {
     fn restart(&self, graph: &Graph<'_>, revisions: &[u64], runs: &mut BTreeMap<Node, u32>, restarted: &mut BTreeSet<Node>) {
         loop {
             let mut eval = Eval { graph, state: self, revisions, runs, memo: HashMap::new() };
-            let changed: Vec<Node> = graph
-                .amortised()
-                .filter(|node| !restarted.contains(node))
-                .filter(|node| {
-                    let known = self.entered.get(&(graph.spec.passes[node.0].name.clone(), node.1));
-                    known != Some(&eval.entered(*node))
-                })
-                .collect();
+            let changed: Vec<Node> =
+                graph.amortised().filter(|node| !restarted.contains(node)).filter(|node| eval.is_entered(*node)).collect();
             // All of a cycle start again together.
             let all: Vec<Node> = graph
                 .amortised()
@@ -381,44 +379,47 @@ impl Eval<'_> {
         }
     }
 
-    /// Everything from outside that enters the cycle of a node.
-    fn entered(&mut self, node: Node) -> u64 {
+    /// Whether something from outside of the cycle of a node is another than in the frame before.
+    fn is_entered(&mut self, node: Node) -> bool {
         let graph = self.graph;
-        let members: Vec<Node> = graph.nodes.iter().copied().filter(|other| graph.same_cycle(node, *other)).collect();
-        let mut found: Vec<u64> = Vec::new();
-        for member in members {
-            let pass = &graph.spec.passes[member.0];
-            let inputs: Vec<u64> = pass.inputs.iter().map(|input| self.revisions[*input as usize]).collect();
-            let own = member.1.map(|iteration| self.revisions[(iteration % INPUTS) as usize]);
-            found.push(hash((&pass.name, pass.salt, member.1, pass.partial, ground(graph.spec, graph.alive, member), inputs, own)));
-            for part in pass.reads.iter().map(|part| noticed(graph.spec, part)) {
-                let part = &part;
-                for layer in layers(graph.spec, part, None) {
-                    let value = match graph.seen(part, layer) {
-                        Some(place) => {
-                            let maker = graph.chain(part.resource, layer)[place][0];
-                            if graph.same_cycle(maker, node) {
-                                hash((&graph.spec.passes[maker.0].name, maker.1))
-                            } else {
-                                self.version(part.resource, layer, place)
-                            }
-                        }
-                        None => DECLARED,
-                    };
-                    found.push(value);
-                }
+        let members = graph.nodes.iter().copied().filter(|other| graph.same_cycle(node, *other));
+        members.into_iter().any(|member| {
+            self.sees(member).into_iter().any(|(sight, value, maker)| match self.state.seen.get(&sight) {
+                Some(known) => *known != value && maker.is_none_or(|maker| !graph.same_cycle(maker, node)),
+                // A pass that has not run; what a known pass sees is known.
+                None => sight.2.is_none(),
+            })
+        })
+    }
+
+    /// What a node sees, and who made it.
+    fn sees(&mut self, node: Node) -> Vec<(Sight, u64, Option<Node>)> {
+        let graph = self.graph;
+        let pass = &graph.spec.passes[node.0];
+        let sight = |cell| (pass.name.clone(), node.1, cell);
+        let inputs: Vec<u64> = pass.inputs.iter().map(|input| self.revisions[*input as usize]).collect();
+        let own = node.1.map(|iteration| self.revisions[(iteration % INPUTS) as usize]);
+        let outside = hash((pass.salt, pass.partial, ground(graph.spec, graph.alive, node), inputs, own));
+        let mut found = vec![(sight(None), outside, None)];
+        for (slot, part) in pass.reads.iter().map(|part| noticed(graph.spec, part)).enumerate() {
+            for layer in layers(graph.spec, &part, None) {
+                let place = graph.seen(&part, layer);
+                let maker = place.map(|place| graph.chain(part.resource, layer)[place][0]);
+                let value = place.map_or(DECLARED, |place| self.version(part.resource, layer, place));
+                found.push((sight(Some((slot, layer))), value, maker));
             }
-            for part in &pass.modifies {
-                for layer in layers(graph.spec, part, member.1) {
-                    let place = graph.chain(part.resource, layer).iter().position(|makers| makers.contains(&member));
-                    if let Some(before) = place.and_then(|place| place.checked_sub(1)) {
-                        let maker = graph.chain(part.resource, layer)[before][0];
-                        found.push(if graph.same_cycle(maker, node) { 0 } else { self.version(part.resource, layer, before) });
-                    }
+        }
+        for (slot, part) in pass.modifies.iter().enumerate() {
+            for layer in layers(graph.spec, part, node.1) {
+                let chain = graph.chain(part.resource, layer);
+                let before = chain.iter().position(|makers| makers.contains(&node)).and_then(|place| place.checked_sub(1));
+                if let Some(before) = before {
+                    let value = self.version(part.resource, layer, before);
+                    found.push((sight(Some((pass.reads.len() + slot, layer))), value, Some(chain[before][0])));
                 }
             }
         }
-        hash(found)
+        found
     }
 }
 
