@@ -67,6 +67,10 @@ pub fn ground(spec: &Spec, alive: &BTreeSet<String>, node: Node) -> u64 {
     for part in &pass.modifies {
         makers.extend(layers(spec, part, node.1).into_iter().map(|layer| maker(spec, alive, part.resource, layer, Some(node.0))));
     }
+    // Who remembers is another where others leave what is remembered.
+    if let Some(of) = pass.remembers {
+        makers.extend((0..spec.resources[of].layers).map(|layer| maker(spec, alive, of, layer, None)));
+    }
     hash((shapes(spec, pass), makers))
 }
 
