@@ -1,7 +1,8 @@
 //! Where pipelines, shaders and scenes come from: the disk first, then what is embedded in the program.
 //!
 //! A shader that a pipeline names is looked up in the `shaders` folder beside the pipeline's folder, then beside the pipeline
-//! itself, then in `shaders` of the working directory, then among the embedded ones. Paths in pipelines can't leave these folders.
+//! itself, then in `shaders` of the working directory, then among the embedded ones. A block, or what a pipeline extends, is looked up
+//! beside the pipeline, then in the folder around, then among the embedded pipelines. Paths in pipelines can't leave these folders.
 
 use std::path::{Component, Path, PathBuf};
 
@@ -20,21 +21,23 @@ const MAX_TEXT_BYTES: u64 = 64 << 20;
 /// Files on disk with the embedded ones behind them.
 #[derive(Debug, Clone, Default)]
 pub struct DiskFiles {
+    block_folders: Vec<PathBuf>,
     shader_folders: Vec<PathBuf>,
 }
 
 impl DiskFiles {
     /// Files for a pipeline: its path decides where its shaders are looked up.
     pub fn for_pipeline(pipeline: &Path) -> DiskFiles {
-        let mut shader_folders = Vec::new();
+        let (mut shader_folders, mut block_folders) = (Vec::new(), Vec::new());
         if pipeline.is_file()
             && let Some(folder) = pipeline.parent()
         {
             shader_folders.push(folder.join("..").join("shaders"));
             shader_folders.push(folder.to_owned());
+            block_folders = vec![folder.to_owned(), folder.join("..")];
         }
         shader_folders.push(PathBuf::from("shaders"));
-        DiskFiles { shader_folders }
+        DiskFiles { block_folders, shader_folders }
     }
 
     /// Files for a shader by itself: `name` is the end of `path`, and imports are looked up where `path` begins.
@@ -42,7 +45,7 @@ impl DiskFiles {
         let depth = Path::new(name).components().count();
         let folder = path.ancestors().nth(depth).map(Path::to_owned).unwrap_or_default();
         let folder = if folder.as_os_str().is_empty() { PathBuf::from(".") } else { folder };
-        DiskFiles { shader_folders: vec![folder] }
+        DiskFiles { block_folders: Vec::new(), shader_folders: vec![folder] }
     }
 }
 
@@ -50,21 +53,15 @@ impl Files for DiskFiles {
     fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError> {
         match kind {
             FileKind::Pipeline => read_disk(Path::new(path)).unwrap_or_else(|| read_embedded(&PIPELINES, "pipelines", path, &["."])),
-            FileKind::Shader => {
-                if Path::new(path).components().any(|component| !matches!(component, Component::Normal(_) | Component::CurDir)) {
-                    return Err(FileError::Unreadable("a shader's path stays inside the shaders folder".to_owned()));
-                }
-                let on_disk = self.shader_folders.iter().find_map(|folder| read_disk(&folder.join(path)));
-                let searched: Vec<String> = self.shader_folders.iter().map(|folder| folder.display().to_string()).collect();
-                let searched: Vec<&str> = searched.iter().map(String::as_str).collect();
-                on_disk.unwrap_or_else(|| read_embedded(&SHADERS, "shaders", path, &searched))
-            }
+            FileKind::Block => read_below(&self.block_folders, path, &PIPELINES, "pipelines"),
+            FileKind::Shader => read_below(&self.shader_folders, path, &SHADERS, "shaders"),
         }
     }
 
     fn known(&self, kind: FileKind) -> Vec<String> {
         match kind {
             FileKind::Pipeline => embedded_pipelines(),
+            FileKind::Block => names(&PIPELINES, "ron"),
             FileKind::Shader => {
                 let mut known = names(&SHADERS, "wgsl");
                 for folder in &self.shader_folders {
@@ -94,6 +91,17 @@ pub fn embedded_scene(path: &str) -> Option<LoadedFile> {
     let inner = inner.strip_prefix("scenes/").unwrap_or(inner);
     let found = SCENES.iter().find(|(name, _)| *name == inner || name.strip_suffix(".ron") == Some(inner));
     found.map(|(name, text)| LoadedFile { name: format!("scenes/{name}"), text: (*text).to_owned() })
+}
+
+/// A file that a pipeline names: in the first of the folders that has it, or in the program.
+fn read_below(folders: &[PathBuf], path: &str, embedded: &Dir<'_>, name: &str) -> Result<LoadedFile, FileError> {
+    if Path::new(path).components().any(|component| !matches!(component, Component::Normal(_) | Component::CurDir)) {
+        return Err(FileError::Unreadable(format!("a path in a pipeline stays inside the {name} folder")));
+    }
+    let on_disk = folders.iter().find_map(|folder| read_disk(&folder.join(path)));
+    let searched: Vec<String> = folders.iter().map(|folder| folder.display().to_string()).collect();
+    let searched: Vec<&str> = searched.iter().map(String::as_str).collect();
+    on_disk.unwrap_or_else(|| read_embedded(embedded, name, path, &searched))
 }
 
 /// `None` if there is no such file, so that the next place is tried.

@@ -4,7 +4,7 @@
 //! names is of no kind, and read as a pipeline.
 
 /// Fields that only pipelines have.
-const PIPELINE: [&str; 4] = ["params", "resources", "passes", "outputs"];
+const PIPELINE: [&str; 7] = ["params", "resources", "passes", "outputs", "blocks", "inputs", "extend"];
 /// Fields that only scenes have.
 const SCENE: [&str; 6] = ["environment", "materials", "cameras", "lights", "objects", "files"];
 

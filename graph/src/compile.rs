@@ -7,16 +7,15 @@ use crate::allocate::allocate;
 use crate::assemble::assemble;
 use crate::bind::{BindInput, bind};
 use crate::device::DeviceFacts;
-use crate::diagnostic::{Diagnostic, did_you_mean, has_errors};
+use crate::diagnostic::{Diagnostic, has_errors};
 use crate::dirty::retention;
 use crate::expand::{ExpandInput, expand};
 use crate::lifetime::lifetimes;
+use crate::load::load;
 use crate::plan::Plan;
 use crate::published::{PublishedSchema, SceneCounts};
 use crate::schedule::schedule;
-use crate::source::{FileKind, Files, SourceMap};
-use crate::syntax::document::Document;
-use crate::syntax::read_document;
+use crate::source::{Files, SourceMap};
 use crate::validate::validate;
 
 /// Everything that a plan depends on.
@@ -64,17 +63,10 @@ pub fn compile(input: &CompileInput<'_>) -> Compilation {
     Compilation { plan, diagnostics, sources }
 }
 
-/// syntax -> validate -> expand -> (reflect and) bind -> retention -> schedule -> lifetime -> allocate -> plan
+/// load (with syntax) -> validate -> expand -> (reflect and) bind -> retention -> schedule -> lifetime -> allocate -> plan
 fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<Diagnostic>) -> Result<Plan, Vec<Diagnostic>> {
-    let loaded = input.files.read(FileKind::Pipeline, input.pipeline).map_err(|error| {
-        let known = input.files.known(FileKind::Pipeline);
-        let hint = did_you_mean(input.pipeline, known.iter().map(String::as_str));
-        let hint = hint.or_else(|| (!known.is_empty()).then(|| format!("pipelines that come with the program: {}", known.join(", "))));
-        vec![Diagnostic::error("compile::missing-file", format!("can't read the pipeline `{}`: {error}", input.pipeline)).maybe_hint(hint)]
-    })?;
-    let file = sources.add(loaded.name, loaded.text.as_str());
-    let document: Document = read_document(&loaded.text, file)?;
-    let validated = validate(&document, file, input.published)?;
+    let loaded = load(input.files, input.pipeline, sources)?;
+    let validated = validate(&loaded, input.published)?;
     let expand_input =
         ExpandInput { output: input.output, counts: input.counts, sets: input.sets, outputs: input.outputs, device: input.device };
     let expanded = expand(&validated, &expand_input)?;

@@ -22,6 +22,7 @@ pub mod format;
 pub mod harness;
 pub mod lifetime;
 mod lists;
+pub mod load;
 pub mod place;
 pub mod plan;
 pub mod published;

@@ -96,8 +96,10 @@ pub trait Files {
 /// Which folder a path is relative to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum FileKind {
-    /// A `.ron` pipeline or block.
+    /// A `.ron` pipeline that a user names.
     Pipeline,
+    /// A `.ron` file that a pipeline names: a block, or what it extends. Relative to the pipeline's folder.
+    Block,
     /// A `.wgsl` shader.
     Shader,
 }
@@ -125,7 +127,7 @@ pub enum FileError {
     Unreadable(String),
 }
 
-/// Files in memory, for tests and tools.
+/// Files in memory, for tests and tools. Blocks are found among the pipelines.
 #[derive(Debug, Clone, Default)]
 pub struct MemoryFiles {
     files: std::collections::BTreeMap<(FileKind, String), String>,
@@ -141,6 +143,7 @@ impl MemoryFiles {
 
 impl Files for MemoryFiles {
     fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError> {
+        let kind = if kind == FileKind::Block { FileKind::Pipeline } else { kind };
         match self.files.get(&(kind, path.to_owned())) {
             Some(text) => Ok(LoadedFile { name: path.to_owned(), text: text.clone() }),
             None => Err(FileError::NotFound { searched: vec!["memory".to_owned()] }),

@@ -10,19 +10,16 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::render;
 use luminaire_graph::expand::types::{Expanded, Indices, PartRef, PassKind, Work};
 use luminaire_graph::expand::{ExpandInput, expand};
+use luminaire_graph::load::load;
 use luminaire_graph::source::SourceMap;
-use luminaire_graph::syntax::read_document;
 use luminaire_graph::validate::validate;
 
 fn expanded(name: &str) -> Expanded {
-    let path = support::fixtures().join(format!("expansions/{name}.ron"));
-    let text = std::fs::read_to_string(path).expect("a fixture");
     let mut sources = SourceMap::default();
-    let file = sources.add(name, text.as_str());
     let counts = [("point_lights".to_owned(), 2), ("directional_lights".to_owned(), 0)].into_iter().collect();
     let input = ExpandInput { output: [256, 128], counts: &counts, sets: &[], outputs: None, device: &DeviceFacts::webgpu_defaults() };
-    read_document(&text, file)
-        .and_then(|document| validate(&document, file, &support::schema()))
+    load(&support::FixtureFiles, &format!("expansions/{name}.ron"), &mut sources)
+        .and_then(|loaded| validate(&loaded, &support::schema()))
         .and_then(|validated| expand(&validated, &input))
         .unwrap_or_else(|problems| panic!("{}", render(&problems, &sources, false)))
 }

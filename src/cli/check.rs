@@ -5,6 +5,7 @@ use std::path::Path;
 use luminaire_graph::compile::{CompileInput, compile};
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, has_errors};
+use luminaire_graph::expand::BLOCK_ALONE;
 use luminaire_graph::published::SceneCounts;
 use luminaire_graph::reflect::reflect;
 use luminaire_graph::source::{SourceMap, Span};
@@ -61,7 +62,7 @@ fn pipeline(path: &Path) -> (Vec<Diagnostic>, SourceMap) {
     let name = path.display().to_string();
     let mut last = (Vec::new(), SourceMap::default());
     for counts in [one_of_everything(), SceneCounts::new()] {
-        let compilation = compile(&CompileInput {
+        let mut compilation = compile(&CompileInput {
             pipeline: &name,
             files: &DiskFiles::for_pipeline(path),
             published: &published,
@@ -71,6 +72,8 @@ fn pipeline(path: &Path) -> (Vec<Diagnostic>, SourceMap) {
             sets: &[],
             outputs: None,
         });
+        // A block is given its inputs by others: alone, its names can be checked, and they have been.
+        compilation.diagnostics.retain(|problem| problem.code != BLOCK_ALONE);
         let problems = has_errors(&compilation.diagnostics);
         if problems || last.0.is_empty() {
             last = (compilation.diagnostics, compilation.sources);

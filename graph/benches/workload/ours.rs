@@ -136,6 +136,8 @@ pub fn bound(declared: &Declared) -> Bound {
         passes.push(Pass {
             name: name.clone(),
             span: Span::NOWHERE,
+            block: Default::default(),
+            list: 0,
             indices: Vec::new(),
             kind: PassKind::Copy,
             shader: None,

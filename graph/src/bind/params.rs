@@ -36,20 +36,25 @@ pub(super) fn pack(pass: &Pass, params: &[Param], layout: &Layout, problems: &mu
 }
 
 /// The parameters marked `live` that a `params` struct names.
-pub(super) fn live<'a>(params: &'a [Param], layout: &'a Layout) -> impl Iterator<Item = &'a str> {
-    let named = |param: &&Param| layout.members.iter().any(|member| member.name == param.name);
+pub(super) fn live<'a>(pass: &'a Pass, params: &'a [Param], layout: &'a Layout) -> impl Iterator<Item = &'a str> {
+    let named = |param: &&Param| own_name(pass, param).is_some_and(|name| layout.members.iter().any(|member| member.name == name));
     params.iter().filter(|param| param.live).filter(named).map(|param| param.name.as_str())
+}
+
+/// The name by which the shader of a pass knows a parameter: those of its own file, and no others.
+fn own_name<'a>(pass: &Pass, param: &'a Param) -> Option<&'a str> {
+    param.name.strip_prefix(&*pass.block).filter(|name| !name.contains('.'))
 }
 
 fn encode(pass: &Pass, params: &[Param], member: &Member) -> Result<Vec<u8>, (String, Option<String>)> {
     let name = member.name.as_str();
     let value = if let Some((_, index)) = pass.indices.iter().rev().find(|(variable, _)| variable == name) {
         Value::Int(i64::from(*index))
-    } else if let Some(param) = params.iter().find(|param| param.name == name) {
+    } else if let Some(param) = params.iter().find(|param| own_name(pass, param) == Some(name)) {
         param.value.clone()
     } else {
         let known: Vec<&str> =
-            params.iter().map(|param| param.name.as_str()).chain(pass.indices.iter().map(|(name, _)| name.as_str())).collect();
+            params.iter().filter_map(|param| own_name(pass, param)).chain(pass.indices.iter().map(|(name, _)| name.as_str())).collect();
         let hint = did_you_mean(name, known.iter().copied()).unwrap_or_else(|| format!("there are {}", list_names(known)));
         return Err((format!("the member `{name}` of `params` is no parameter of the pipeline"), Some(hint)));
     };

@@ -180,7 +180,7 @@ impl<'a> Builder<'a> {
                         GlobalKind::Uniform { layout } => Some(layout),
                         _ => None,
                     });
-                    let live = layout.into_iter().flat_map(|layout| params::live(&self.expanded.params, layout));
+                    let live = layout.into_iter().flat_map(|layout| params::live(pass, &self.expanded.params, layout));
                     found.extend(live.map(|name| Input::Param(name.to_owned())));
                 }
                 _ => {}

@@ -3,12 +3,13 @@
 use std::collections::HashSet;
 
 use super::error::ExpandError;
-use super::types::{Param, Value};
+use super::ExpandInput;
+use super::types::{Param, Shape, Value};
 use crate::diagnostic::Diagnostic;
 use crate::expression::kind_of;
 use crate::published::SceneCounts;
 use crate::source::Span;
-use crate::validate::types::PlacedExpr;
+use crate::validate::types::{BlockDecl, Condition, PlacedExpr};
 
 /// What expressions may name, and the problems found so far.
 pub(super) struct Environment<'a> {
@@ -20,13 +21,42 @@ pub(super) struct Environment<'a> {
     pub output: [u32; 2],
     /// How many of each thing the scene has.
     pub counts: &'a SceneCounts,
+    /// What is known of resources' extents, by id.
+    pub shapes: Vec<Option<Shape>>,
+    /// Whether blocks stand, by index.
+    pub blocks: Vec<bool>,
     /// Everything wrong.
     pub problems: Vec<Diagnostic>,
     /// Codes and places of `problems`.
     pub reported: HashSet<(&'static str, Span)>,
 }
 
-impl Environment<'_> {
+impl<'a> Environment<'a> {
+    /// One in which nothing has a value yet but what comes from outside.
+    pub fn new(input: &ExpandInput<'a>) -> Environment<'a> {
+        let (params, indices, shapes, blocks, problems, reported) = Default::default();
+        Environment { params, indices, output: input.output, counts: input.counts, shapes, blocks, problems, reported }
+    }
+
+    /// Decides which blocks stand.
+    pub fn decide(&mut self, blocks: &[BlockDecl]) {
+        for (index, block) in blocks.iter().enumerate() {
+            let around = index == 0 || self.blocks.get(block.parent).copied().unwrap_or(false);
+            let stands = around && self.stands(&block.condition, block.path.trim_end_matches('.'));
+            self.blocks.push(stands);
+        }
+    }
+
+    /// Whether a condition holds. `name` is whose.
+    pub fn stands(&mut self, condition: &Condition, name: &str) -> bool {
+        let has = condition.has.as_ref().is_none_or(|count| self.counts.get(count).is_some_and(|count| *count > 0));
+        let when = match &condition.when {
+            None => true,
+            Some(when) => self.truth(when, &format!("the condition of `{name}`")).unwrap_or(false),
+        };
+        has && when
+    }
+
     /// Records a problem; one place is reported once, however many iterations of a loop meet it.
     pub fn report(&mut self, error: ExpandError) {
         let problem = Diagnostic::from(error);
@@ -37,8 +67,13 @@ impl Environment<'_> {
     }
 
     fn lookup(&self, name: &str) -> Option<Value> {
-        if let Some((_, index)) = self.indices.iter().rev().find(|(variable, _)| variable == name) {
-            return Some(Value::Int(i64::from(*index)));
+        if let Some(variable) = name.strip_prefix('@') {
+            let index = self.indices.iter().rev().find(|(known, _)| known == variable)?.1;
+            return Some(Value::Int(i64::from(index)));
+        }
+        if let Some((resource, extent)) = name.strip_prefix('$').and_then(|name| name.split_once('.')) {
+            let shape = self.shapes.get(resource.parse::<usize>().ok()?)?.as_ref()?;
+            return Some(Value::Int(shape.extent(extent) as i64));
         }
         match name {
             "output.width" => return Some(Value::Int(i64::from(self.output[0]))),

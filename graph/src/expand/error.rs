@@ -3,6 +3,11 @@
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::source::Span;
 
+use super::types::Located;
+
+/// The code of the message that a block gets which stands alone. Nothing else is wrong with it.
+pub const BLOCK_ALONE: &str = "expand::block-alone";
+
 /// A problem found by expansion.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[allow(missing_docs)]
@@ -11,6 +16,14 @@ pub enum ExpandError {
     UnknownParam { name: String, known: Vec<String> },
     #[error("parameter `{name}` can't be set to `{given}`: {reason}")]
     BadSet { name: String, given: String, reason: String, span: Span },
+    #[error("the parameter `{name}` can't have this value: {reason}")]
+    BadGiven { name: String, reason: String, span: Span, declared: Span },
+    #[error("it is a block: somebody has to give it {}", list_names(inputs.iter().map(|input| input.value.as_str())))]
+    BlockAlone { inputs: Vec<Located<String>> },
+    #[error("the extent of `{name}` depends on itself: {}", chain.join(" -> "))]
+    CircularExtent { name: String, chain: Vec<String>, span: Span },
+    #[error("`{first}` and `{second}` both modify `{resource}`, and nothing says which comes first")]
+    ModifierOrder { resource: String, first: String, second: String, spans: [Span; 2] },
     #[error("there is no output `{name}`")]
     UnknownOutput { name: String, known: Vec<String> },
     #[error("{what}: {reason}")]
@@ -51,6 +64,20 @@ impl From<ExpandError> for Diagnostic {
                 Diagnostic::error("expand::unknown-param", message).note(format!("the pipeline's parameters: {names}")).maybe_hint(hint)
             }
             ExpandError::BadSet { span, .. } => Diagnostic::error("expand::bad-set", message).at(span, "declared here"),
+            ExpandError::BadGiven { span, declared, .. } => {
+                Diagnostic::error("expand::bad-given", message).at(span, "given here").and(declared, "declared here")
+            }
+            ExpandError::BlockAlone { inputs } => {
+                let place = inputs.first().map_or(Span::NOWHERE, |input| input.span);
+                Diagnostic::error(BLOCK_ALONE, message).at(place, "asked for here").hint("name it under `blocks` of a pipeline, with `inputs`")
+            }
+            ExpandError::CircularExtent { span, .. } => {
+                Diagnostic::error("expand::circular-extent", message).at(span, "here").hint("compute one of the sizes from parameters")
+            }
+            ExpandError::ModifierOrder { spans, .. } => Diagnostic::error("expand::modifier-order", message)
+                .at(spans[1], "this one modifies it")
+                .and(spans[0], "and this one, which stands in another list")
+                .hint("the order of a file says it only for the passes of that file: name one under `after` of the other, or of its block"),
             ExpandError::UnknownOutput { name, known } => {
                 let names = list_names(known.iter().map(String::as_str));
                 let hint = did_you_mean(&name, known.iter().map(String::as_str));

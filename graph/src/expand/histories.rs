@@ -27,6 +27,8 @@ pub(super) fn passes(histories: &[Located<ResourceId>], resources: &[Resource], 
         let part = PartRef { resource: ResourceId((first + index) as u32), mips: None, layers: None, version: None, span };
         passes.push(Pass {
             name: resource.name.clone(),
+            block: Default::default(),
+            list: 0,
             span,
             indices: Vec::new(),
             kind: PassKind::Remember,

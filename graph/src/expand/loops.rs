@@ -8,13 +8,15 @@ impl Unroller<'_, '_> {
     /// Makes the passes of a loop.
     pub(super) fn repeat(&mut self, decl: &RepeatDecl, scope: &str) {
         let name = decl.name.value.as_str();
-        if !self.stands(&decl.condition, name) {
+        if !self.environment.stands(&decl.condition, name) {
             return;
         }
         let Some((first, end)) = self.range(decl) else { return };
         // Enough to find that it is too long.
         let indices = (first..end.min(first.saturating_add(MAX_PASSES as u64 + 1))).map(|index| index as u32);
         let Some(spread) = self.spread(decl, scope) else { return };
+        let outer = self.after.len();
+        self.wait_for(&decl.after, scope);
         if decl.batched {
             self.iteration = spread.map(|spread| Run::Spread { spread, iteration: 0 }).or(self.iteration);
             for item in &decl.items {
@@ -40,6 +42,7 @@ impl Unroller<'_, '_> {
         if spread.is_some() {
             self.iteration = None;
         }
+        self.after.truncate(outer);
     }
 
     /// The first index and one past the last.
@@ -90,7 +93,7 @@ impl Unroller<'_, '_> {
     fn batch(&mut self, decl: &RepeatDecl, pass: &PassDecl, indices: impl Iterator<Item = u32> + Clone, scope: &str) {
         let scope = format!("{scope}{}.", decl.name.value);
         let name = format!("{scope}{}", pass.name.value);
-        if !self.stands(&pass.condition, &name) || !self.grow(indices.clone().count(), &decl.name) {
+        if !self.environment.stands(&pass.condition, &name) || !self.grow(indices.clone().count(), &decl.name) {
             return;
         }
         let mut iterations = Vec::new();

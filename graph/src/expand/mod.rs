@@ -5,8 +5,10 @@
 
 mod environment;
 mod error;
+mod extents;
 mod histories;
 mod loops;
+mod modifiers;
 mod params;
 mod passes;
 mod resources;
@@ -14,10 +16,8 @@ mod rules;
 pub mod types;
 mod writers;
 
-pub use error::ExpandError;
+pub use error::{BLOCK_ALONE, ExpandError};
 pub use passes::MAX_PASSES;
-
-use std::collections::HashSet;
 
 use crate::device::DeviceFacts;
 use crate::diagnostic::{Diagnostic, has_errors};
@@ -43,18 +43,18 @@ pub struct ExpandInput<'a> {
 
 /// Expands a validated document.
 pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded, Vec<Diagnostic>> {
-    let mut problems = Vec::new();
-    let params = params::values(&validated.params, input.sets, &mut problems);
-    let mut environment =
-        Environment { params, indices: Vec::new(), output: input.output, counts: input.counts, problems, reported: HashSet::new() };
-    let mut resources: Vec<_> =
-        validated.resources.iter().filter_map(|decl| resources::resource(&mut environment, decl, input.device)).collect();
-    // Parts can only be checked against resources that are all there.
-    if resources.len() < validated.resources.len() {
-        return Err(environment.problems);
+    if !validated.inputs.is_empty() {
+        return Err(vec![ExpandError::BlockAlone { inputs: validated.inputs.clone() }.into()]);
     }
+    let mut environment = Environment::new(input);
+    params::values(&mut environment, &validated.params, input.sets);
+    // Sizes name parameters, and parts can only be checked against resources that are all there.
+    let Some(mut resources) = resources::resources(&mut environment, &validated.resources, input.device) else {
+        return Err(environment.problems);
+    };
+    environment.decide(&validated.blocks);
     histories::resources(&validated.histories, &validated.resources, &mut resources);
-    let (mut passes, spreads) = passes::passes(&mut environment, &validated.items, &resources);
+    let (mut passes, spreads) = passes::passes(&mut environment, validated, &resources);
     histories::passes(&validated.histories, &resources, &mut passes);
     let mut outputs = Vec::new();
     for (name, part) in &validated.outputs {
@@ -72,6 +72,7 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     }
     let retained_budget = validated.retained_budget.as_ref().and_then(|budget| environment.mebibytes(budget));
     if !has_errors(&environment.problems) {
+        modifiers::order(&mut environment, &resources, &mut passes);
         rules::check(&mut environment, validated, &resources, &passes);
     }
     let Environment { params, problems, .. } = environment;

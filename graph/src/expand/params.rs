@@ -1,41 +1,72 @@
 //! The values of parameters: defaults, and what the user set.
 
+use super::environment::Environment;
 use super::error::ExpandError;
 use super::types::{Param, Value};
-use crate::diagnostic::Diagnostic;
+use crate::diagnostic::list_names;
+use crate::expression::kind_of;
 use crate::validate::types::ParamDecl;
 
-/// Gives each parameter its value. `sets` are names with texts as from a command line.
-pub(super) fn values(params: &[ParamDecl], sets: &[(String, String)], problems: &mut Vec<Diagnostic>) -> Vec<Param> {
+/// Gives each parameter its value, in the order of declaration: those of a block may be given by expressions over those of its user.
+/// `sets` are names with texts as from a command line.
+pub(super) fn values(environment: &mut Environment<'_>, params: &[ParamDecl], sets: &[(String, String)]) {
     for (name, _) in sets {
         if !params.iter().any(|param| param.name.value == *name) {
-            let known = params.iter().map(|param| param.name.value.clone()).collect();
-            problems.push(ExpandError::UnknownParam { name: name.clone(), known }.into());
+            let known = params.iter().filter(|param| param.given.is_none()).map(|param| param.name.value.clone()).collect();
+            environment.problems.push(ExpandError::UnknownParam { name: name.clone(), known }.into());
         }
     }
-    let value_of = |param: &ParamDecl, problems: &mut Vec<Diagnostic>| {
-        let mut value = param.default.clone();
-        for (_, given) in sets.iter().filter(|(name, _)| *name == param.name.value) {
-            match parse(param, given) {
-                Ok(parsed) => value = parsed,
-                Err(reason) => {
-                    let name = param.name.value.clone();
-                    problems.push(ExpandError::BadSet { name, given: given.clone(), reason, span: param.name.span }.into());
+    for param in params {
+        let (mut value, mut live) = (param.default.clone(), param.live);
+        let name = &param.name.value;
+        if let Some(given) = &param.given {
+            let mut used = Vec::new();
+            given.expression.names(&mut used);
+            live |= environment.params.iter().any(|other| other.live && used.iter().any(|(name, _)| *name == other.name));
+            if let Some(found) = environment.value(given, &format!("the parameter `{name}`")) {
+                match fit(param, found) {
+                    Ok(fitting) => value = fitting,
+                    Err(reason) => {
+                        let (name, span) = (name.clone(), given.span);
+                        environment.report(ExpandError::BadGiven { name, reason, span, declared: param.name.span });
+                    }
                 }
             }
         }
-        value
+        for (_, text) in sets.iter().filter(|(set, _)| set == name) {
+            let parsed = match &param.given {
+                None => parse(param, text),
+                Some(_) => Err("the pipeline gives the block this value: set what it is computed from".to_owned()),
+            };
+            match parsed {
+                Ok(parsed) => value = parsed,
+                Err(reason) => {
+                    let span = param.given.as_ref().map_or(param.name.span, |given| given.span);
+                    let bad = ExpandError::BadSet { name: name.clone(), given: text.clone(), reason, span };
+                    environment.problems.push(bad.into());
+                }
+            }
+        }
+        environment.params.push(Param { name: name.clone(), span: param.name.span, value, options: param.options.clone(), live });
+    }
+}
+
+/// A value that a block is given, as one of its parameter's type.
+fn fit(param: &ParamDecl, value: Value) -> Result<Value, String> {
+    let value = match (&param.default, value) {
+        (Value::Float(_), Value::Int(value)) => Value::Float(value as f64),
+        (Value::Word(..), Value::Word(_, word)) => match param.options.iter().position(|option| *option == word) {
+            Some(index) => Value::Word(index as u32, word),
+            None => {
+                let options = list_names(param.options.iter().map(String::as_str));
+                return Err(format!("it is `{word}`, and the options are {options}"));
+            }
+        },
+        (Value::Vector(expected), Value::Vector(values)) if expected.len() == values.len() => Value::Vector(values),
+        (default, value) if std::mem::discriminant(default) == std::mem::discriminant(&value) && !matches!(value, Value::Vector(_)) => value,
+        (default, value) => return Err(format!("it is {}, and must be {}", kind_of(&value), kind_of(default))),
     };
-    params
-        .iter()
-        .map(|param| Param {
-            name: param.name.value.clone(),
-            span: param.name.span,
-            value: value_of(param, problems),
-            options: param.options.clone(),
-            live: param.live,
-        })
-        .collect()
+    in_range(param, value)
 }
 
 fn parse(param: &ParamDecl, given: &str) -> Result<Value, String> {
@@ -45,7 +76,7 @@ fn parse(param: &ParamDecl, given: &str) -> Result<Value, String> {
         Value::Float(_) => Value::Float(finite(given).ok_or("expected a number")?),
         Value::Word(..) => {
             let index = param.options.iter().position(|option| option == given);
-            let options = crate::diagnostic::list_names(param.options.iter().map(String::as_str));
+            let options = list_names(param.options.iter().map(String::as_str));
             Value::Word(index.ok_or_else(|| format!("expected one of {options}"))? as u32, given.to_owned())
         }
         Value::Vector(default) => {
@@ -56,18 +87,22 @@ fn parse(param: &ParamDecl, given: &str) -> Result<Value, String> {
             Value::Vector(parts)
         }
     };
+    in_range(param, value)
+}
+
+fn in_range(param: &ParamDecl, value: Value) -> Result<Value, String> {
     let number = match &value {
-        Value::Int(value) => Some(*value as f64),
-        Value::Float(value) => Some(*value),
-        _ => None,
+        Value::Int(value) => *value as f64,
+        Value::Float(value) => *value,
+        _ => return Ok(value),
     };
-    if let (Some((low, high)), Some(number)) = (param.range, number)
-        && !(low..=high).contains(&number)
-    {
-        let unit = param.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
-        return Err(format!("allowed are {low} to {high}{unit}"));
+    match param.range {
+        Some((low, high)) if !(low..=high).contains(&number) => {
+            let unit = param.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
+            Err(format!("allowed are {low} to {high}{unit}, and this is {value}"))
+        }
+        _ => Ok(value),
     }
-    Ok(value)
 }
 
 fn finite(text: &str) -> Option<f64> {

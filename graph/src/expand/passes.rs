@@ -2,42 +2,74 @@
 //!
 //! Names are stable: a pass of a loop is `loop[index].pass`, whatever stands beside it. Passes are made in the order of the file.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap};
+use std::sync::Arc;
 
 use super::environment::Environment;
 use super::error::ExpandError;
 use super::types::{Element, Indices, Located, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Spread, Value, Work};
 use crate::published::ViewKind;
-use crate::validate::types::{Condition, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, View, WorkDecl};
+use crate::source::FileId;
+use crate::validate::types::{BlockDecl, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, Validated, View, WorkDecl};
 use crate::validate::without_indices;
 
 /// Pipelines longer than this are refused.
 pub const MAX_PASSES: usize = 100_000;
 
 /// Unrolls everything.
-pub(super) fn passes(environment: &mut Environment<'_>, items: &[Item], resources: &[Resource]) -> (Vec<Pass>, Vec<Spread>) {
-    let (passes, pending, spreads, elements) = Default::default();
-    let mut unroller = Unroller { environment, resources, passes, pending, spreads, elements, iteration: None, count: 0, full: false };
-    unroller.items(items, "");
+pub(super) fn passes(environment: &mut Environment<'_>, validated: &Validated, resources: &[Resource]) -> (Vec<Pass>, Vec<Spread>) {
+    let (passes, pending, spreads, elements, after, lists, block) = Default::default();
+    let mut unroller = Unroller {
+        environment,
+        resources,
+        blocks: &validated.blocks,
+        passes,
+        pending,
+        spreads,
+        elements,
+        after,
+        lists,
+        block,
+        iteration: None,
+        count: 0,
+        full: false,
+    };
+    unroller.items(&validated.items, "");
     let spreads = std::mem::take(&mut unroller.spreads);
     (unroller.resolve(), spreads)
 }
 
+/// A path of a pass, and where it is seen from.
+#[derive(Clone)]
+pub(super) struct Seen {
+    /// The path of the loop iterations around.
+    pub scope: String,
+    /// The part of `scope` that is a block's: names outside are not seen.
+    pub block: usize,
+    pub path: Located<String>,
+}
+
 /// References to passes that are resolved once all names are known.
 struct Pending {
-    scope: String,
-    after: Vec<Located<String>>,
-    versions: Vec<(usize, Located<String>)>,
+    after: Vec<Seen>,
+    versions: Vec<(usize, Seen)>,
 }
 
 pub(super) struct Unroller<'a, 'b> {
     pub environment: &'a mut Environment<'b>,
     pub resources: &'a [Resource],
+    blocks: &'a [BlockDecl],
     pub passes: Vec<Pass>,
     pending: Vec<Pending>,
     pub spreads: Vec<Spread>,
     /// Elements of the loops around, outermost first.
     pub elements: Vec<Element>,
+    /// What the loops and blocks around come after.
+    pub after: Vec<Seen>,
+    /// Numbers of lists, by block and file.
+    lists: BTreeMap<(Arc<str>, FileId), u32>,
+    /// The path of the block around.
+    block: Arc<str>,
     /// The iteration of a loop around that spreads over frames.
     pub iteration: Option<Run>,
     /// Passes and iterations of batches so far.
@@ -54,17 +86,30 @@ impl Unroller<'_, '_> {
             match item {
                 Item::Pass(decl) => self.pass(decl, scope),
                 Item::Repeat(decl) => self.repeat(decl, scope),
+                Item::Block(index, items) => self.block(*index, items),
             }
         }
     }
 
-    pub(super) fn stands(&mut self, condition: &Condition, name: &str) -> bool {
-        let has = condition.has.as_ref().is_none_or(|count| self.environment.counts.get(count).is_some_and(|count| *count > 0));
-        let when = match &condition.when {
-            None => true,
-            Some(when) => self.environment.truth(when, &format!("the condition of `{name}`")).unwrap_or(false),
-        };
-        has && when
+    fn block(&mut self, index: usize, items: &[Item]) {
+        let Some(decl) = self.blocks.get(index).filter(|_| self.environment.blocks.get(index) == Some(&true)) else { return };
+        let outer = self.after.len();
+        let user = self.blocks.get(decl.parent).map_or("", |user| user.path.as_str());
+        self.wait_for(&decl.after, user);
+        let around = std::mem::replace(&mut self.block, decl.path.as_str().into());
+        self.items(items, &decl.path);
+        self.block = around;
+        self.after.truncate(outer);
+    }
+
+    /// What follows comes after these, until `after` is truncated.
+    pub(super) fn wait_for(&mut self, paths: &[Located<String>], scope: &str) {
+        let seen: Vec<Seen> = paths.iter().map(|path| self.seen(path, scope)).collect();
+        self.after.extend(seen);
+    }
+
+    fn seen(&self, path: &Located<String>, scope: &str) -> Seen {
+        Seen { scope: scope.to_owned(), block: self.block.len(), path: path.clone() }
     }
 
     /// Adds to the length of the pipeline; false if it is too long.
@@ -79,7 +124,7 @@ impl Unroller<'_, '_> {
 
     fn pass(&mut self, decl: &PassDecl, scope: &str) {
         let name = format!("{scope}{}", decl.name.value);
-        if !self.stands(&decl.condition, &name) {
+        if !self.environment.stands(&decl.condition, &name) {
             return;
         }
         let slots = self.slots(decl, &name);
@@ -112,10 +157,15 @@ impl Unroller<'_, '_> {
         let run = self.run(&decl.run, &name)?;
         let kind = self.kind(&decl.kind, &name)?;
         let versions = decl.reads.iter().enumerate();
-        let versions = versions.filter_map(|(index, (_, part))| Some((index, part.version.clone()?))).collect();
-        self.pending.push(Pending { scope: scope.to_owned(), after: decl.after.clone(), versions });
+        let versions = versions.filter_map(|(index, (_, part))| Some((index, self.seen(part.version.as_ref()?, scope)))).collect();
+        let after = decl.after.iter().map(|path| self.seen(path, scope)).chain(self.after.iter().cloned()).collect();
+        self.pending.push(Pending { after, versions });
+        let next = self.lists.len() as u32;
+        let list = *self.lists.entry((self.block.clone(), decl.file)).or_insert(next);
         self.passes.push(Pass {
             name,
+            block: self.block.clone(),
+            list,
             span: decl.name.span,
             indices: self.environment.indices.clone(),
             kind,
@@ -221,21 +271,26 @@ impl Unroller<'_, '_> {
 
     /// Turns names of passes into ids.
     fn resolve(mut self) -> Vec<Pass> {
-        // By name without indices, so that a loop's passes are found together. Only built where something refers to passes.
+        // By name without indices, so that a loop's passes are found together, and by the names of all that is around. Only built
+        // where something refers to passes.
         let mut by_plain_name: HashMap<String, Vec<PassId>> = HashMap::new();
         if self.pending.iter().any(|pending| !pending.after.is_empty() || !pending.versions.is_empty()) {
             for (index, pass) in self.passes.iter().enumerate() {
-                by_plain_name.entry(without_indices(&pass.name)).or_default().push(PassId(index as u32));
+                let plain = without_indices(&pass.name);
+                for (end, _) in plain.match_indices('.').chain([(plain.len(), "")]) {
+                    by_plain_name.entry(plain[..end].to_owned()).or_default().push(PassId(index as u32));
+                }
             }
         }
         let pending = std::mem::take(&mut self.pending);
         for (index, pending) in pending.into_iter().enumerate() {
-            for path in pending.after {
-                let found = find(&self.passes, &by_plain_name, &pending.scope, &path.value);
+            for seen in &pending.after {
+                let found = find(&self.passes, &by_plain_name, seen, true);
                 self.passes[index].after.extend(found);
             }
-            for (slot, path) in pending.versions {
-                let found = find(&self.passes, &by_plain_name, &pending.scope, &path.value);
+            for (slot, seen) in pending.versions {
+                let found = find(&self.passes, &by_plain_name, &seen, false);
+                let Located { value: path, span } = seen.path;
                 match found.as_slice() {
                     [only] => {
                         let pass = &mut self.passes[index];
@@ -248,8 +303,8 @@ impl Unroller<'_, '_> {
                             }
                         }
                     }
-                    [] => self.environment.report(ExpandError::AbsentPass { path: path.value, span: path.span }),
-                    many => self.environment.report(ExpandError::AmbiguousPass { path: path.value, count: many.len(), span: path.span }),
+                    [] => self.environment.report(ExpandError::AbsentPass { path, span }),
+                    many => self.environment.report(ExpandError::AmbiguousPass { path, count: many.len(), span }),
                 }
             }
         }
@@ -257,29 +312,31 @@ impl Unroller<'_, '_> {
     }
 }
 
-/// The passes that a path names, seen from a loop iteration: first in that iteration, then in those around it.
-fn find(passes: &[Pass], by_plain_name: &HashMap<String, Vec<PassId>>, scope: &str, path: &str) -> Vec<PassId> {
-    let mut scope = scope;
+/// The passes that a path names, seen from a loop iteration: first in that iteration, then in those around it. `groups` allows loops
+/// and blocks, which stand for all of their passes.
+fn find(passes: &[Pass], by_plain_name: &HashMap<String, Vec<PassId>>, seen: &Seen, groups: bool) -> Vec<PassId> {
+    let mut scope = seen.scope.as_str();
     loop {
-        let full = format!("{scope}{path}");
+        let full = format!("{scope}{}", seen.path.value);
         if let Some(candidates) = by_plain_name.get(&without_indices(&full)) {
-            let found: Vec<PassId> =
-                candidates.iter().copied().filter(|id| passes.get(id.index()).is_some_and(|pass| fits(&full, &pass.name))).collect();
+            let fitting = |id: &PassId| passes.get(id.index()).is_some_and(|pass| fits(&full, &pass.name, groups));
+            let found: Vec<PassId> = candidates.iter().copied().filter(fitting).collect();
             if !found.is_empty() {
                 return found;
             }
         }
-        match scope.trim_end_matches('.').rfind('.') {
-            Some(dot) => scope = &scope[..=dot],
-            None if !scope.is_empty() => scope = "",
-            None => return Vec::new(),
+        if scope.len() <= seen.block {
+            return Vec::new();
         }
+        let around = scope.trim_end_matches('.').rfind('.').map_or(0, |dot| dot + 1);
+        scope = &scope[..around.max(seen.block)];
     }
 }
 
 /// Whether a pattern names a pass: segments are equal, and a segment without an index stands for all of them.
-fn fits(pattern: &str, name: &str) -> bool {
-    pattern.split('.').count() == name.split('.').count()
+fn fits(pattern: &str, name: &str, groups: bool) -> bool {
+    let (wanted, there) = (pattern.split('.').count(), name.split('.').count());
+    (wanted == there || groups && wanted < there)
         && pattern
             .split('.')
             .zip(name.split('.'))
@@ -287,7 +344,11 @@ fn fits(pattern: &str, name: &str) -> bool {
 }
 
 /// Computes the indices of a reference and checks them against its resource.
+/// Where a block does not stand, what takes its place.
 pub(super) fn reference(environment: &mut Environment<'_>, resources: &[Resource], part: &PartExpr, pass: &str) -> Option<PartRef> {
+    if let Some(instead) = part.otherwise.iter().find(|instead| environment.blocks.get(instead.block) == Some(&false)) {
+        return reference(environment, resources, &instead.part, pass);
+    }
     let resource = &resources[part.resource.index()];
     let mut index = |expr: &Option<PlacedExpr>, what: &'static str, count: Option<u32>| -> Option<Option<u32>> {
         let Some(expr) = expr else { return Some(None) };

@@ -2,13 +2,28 @@
 
 use super::environment::Environment;
 use super::error::ExpandError;
+use super::extents;
 use super::types::{Dimension, Resource, Shape, TextureShape};
 use crate::device::DeviceFacts;
 use crate::source::Span;
 use crate::validate::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
 
+/// Computes the extents of all resources; `None` if something is wrong.
+pub(super) fn resources(environment: &mut Environment<'_>, decls: &[ResourceDecl], device: &DeviceFacts) -> Option<Vec<Resource>> {
+    environment.shapes = vec![None; decls.len()];
+    let mut found: Vec<Option<Resource>> = vec![None; decls.len()];
+    for index in extents::order(environment, decls)? {
+        // One whose size names a faulty one has no fault of its own.
+        if extents::named(&decls[index]).all(|other| environment.shapes.get(other).is_some_and(Option::is_some)) {
+            found[index] = resource(environment, &decls[index], device);
+            environment.shapes[index] = found[index].as_ref().map(|resource| resource.shape.clone());
+        }
+    }
+    found.into_iter().collect()
+}
+
 /// Computes the extent of one resource.
-pub(super) fn resource(environment: &mut Environment<'_>, decl: &ResourceDecl, device: &DeviceFacts) -> Option<Resource> {
+fn resource(environment: &mut Environment<'_>, decl: &ResourceDecl, device: &DeviceFacts) -> Option<Resource> {
     let name = decl.name.value.as_str();
     let shape = match &decl.kind {
         ResourceKind::Buffer { size } => {

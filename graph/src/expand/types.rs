@@ -1,5 +1,7 @@
 //! The output of expansion: a flat list of passes over resources with known extents.
 
+use std::sync::Arc;
+
 use crate::format::Format;
 use crate::plan::Cull;
 use crate::published::{DrawFilter, ViewKind};
@@ -52,7 +54,7 @@ pub struct Expanded {
 /// A parameter with its value.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Param {
-    /// As in the file.
+    /// As in the file, behind the path of its block.
     pub name: String,
     /// Where it is declared.
     pub span: Span,
@@ -80,7 +82,7 @@ pub enum Value {
 /// A resource with its extent.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Resource {
-    /// As in the file.
+    /// As in the file, behind the path of its block.
     pub name: String,
     /// Where it is declared.
     pub span: Span,
@@ -139,6 +141,23 @@ pub enum Shape {
     },
 }
 
+impl Shape {
+    /// The extent by its name in expressions; of a buffer the width is its bytes.
+    pub fn extent(&self, name: &str) -> u64 {
+        match (self, name) {
+            (Shape::Buffer { bytes }, "width") => *bytes,
+            (Shape::Buffer { .. }, _) => 1,
+            (Shape::Texture(shape), _) => u64::from(match name {
+                "width" => shape.width,
+                "height" => shape.height,
+                "depth" => shape.depth,
+                "layers" => shape.layers,
+                _ => shape.mips,
+            }),
+        }
+    }
+}
+
 /// The extent and formats of a texture. Everything is at least 1.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct TextureShape {
@@ -185,8 +204,12 @@ pub enum ClearValue {
 /// A pass with everything resolved but its shader.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pass {
-    /// Stable and unique: `shade`, `faces[3].draw`.
+    /// Stable and unique: `shade`, `faces[3].draw`, `shadows.draw`.
     pub name: String,
+    /// Begins the names of parameters that its shader sees: the path of its block, `shadows.`, or nothing.
+    pub block: Arc<str>,
+    /// The list in which it stands, counted through all files and blocks: within one, the order says who modifies first.
+    pub list: u32,
     /// The name in the file.
     pub span: Span,
     /// Loop variables with their values, outermost first. They reach `params` like parameters.

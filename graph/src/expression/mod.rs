@@ -91,6 +91,24 @@ impl Expression {
         }
     }
 
+    /// Puts other names in place of all that are used, in the order of [`Expression::names`].
+    pub fn rename(&mut self, names: &mut dyn Iterator<Item = String>) {
+        match self {
+            Expression::Literal(_) => {}
+            Expression::Name(name, _) => {
+                if let Some(other) = names.next() {
+                    *name = other;
+                }
+            }
+            Expression::Unary(_, inner) => inner.rename(names),
+            Expression::Binary(_, left, right) => {
+                left.rename(names);
+                right.rename(names);
+            }
+            Expression::Call(_, arguments) => arguments.iter_mut().for_each(|argument| argument.rename(names)),
+        }
+    }
+
     /// Every word literal.
     pub fn words(&self, found: &mut Vec<String>) {
         match self {

@@ -29,6 +29,10 @@ pub enum ValidateError {
     BatchedIndex { variable: String, span: Span },
     #[error("pass `{pass}`: {reason}")]
     BadRun { pass: String, reason: String, hint: &'static str, span: Span },
+    #[error("block `{block}`: {reason}")]
+    BadBlock { block: String, reason: String, hint: Option<&'static str>, span: Span },
+    #[error("the input `{input}` of block `{block}` is {mismatch}")]
+    InputMismatch { block: String, input: String, mismatch: String, span: Span, declared: Span },
     #[error("the pipeline has no {what}")]
     Empty { what: &'static str, span: Span },
 }
@@ -74,6 +78,12 @@ impl From<ValidateError> for Diagnostic {
                 .at(span, "here")
                 .hint("only parts may name the index: the shader finds those of the iterations that run in `batch`"),
             ValidateError::BadRun { hint, span, .. } => Diagnostic::error("validate::bad-run", message).at(span, "here").hint(hint),
+            ValidateError::BadBlock { hint, span, .. } => {
+                Diagnostic::error("validate::bad-block", message).at(span, "here").maybe_hint(hint.map(str::to_owned))
+            }
+            ValidateError::InputMismatch { span, declared, .. } => {
+                Diagnostic::error("validate::input-mismatch", message).at(span, "given here").and(declared, "asked for here")
+            }
             ValidateError::Empty { span, .. } => Diagnostic::error("validate::empty", message).at(span, "nothing here"),
         }
     }

@@ -1,25 +1,27 @@
 //! Loops: what they run over, how their iterations run, and what may stand inside.
 
 use super::error::ValidateError;
-use super::passes::{MAX_LOOP_DEPTH, bad, condition, items, located};
+use super::instances::Declared;
+use super::passes::{MAX_LOOP_DEPTH, after, bad, condition, items, located};
 use super::scope::Scope;
 use super::types::{Each, RepeatDecl, SpreadDecl};
 use crate::expand::types::ResourceId;
-use crate::syntax::document::{DimensionDoc, EachDoc, Expr, PassDoc, RepeatRunDoc, ResourceDoc, Text};
+use crate::syntax::document::{DimensionDoc, EachDoc, Expr, PassDoc, RepeatRunDoc, Text};
 use crate::syntax::spanned::Spanned;
 
 /// Checks a loop and its passes.
 pub(super) fn repeat(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<RepeatDecl> {
-    let PassDoc::Repeat { when, has, each, r#as, batched, run, passes, .. } = pass else { return None };
+    let PassDoc::Repeat { when, has, each, r#as, batched, run, passes, after, .. } = pass else { return None };
     let condition = condition(scope, when.as_ref(), has.as_ref());
     let each_decl = self::each(scope, name, each);
     let spread = spread(scope, name, run.as_ref());
+    let after = self::after(scope, after);
     scope.check_name(r#as);
-    if scope.variables.len() >= MAX_LOOP_DEPTH {
+    if scope.loops.variables.len() >= MAX_LOOP_DEPTH {
         bad(scope, name, format!("loops are nested deeper than {MAX_LOOP_DEPTH} levels"), None, name.span);
         return None;
     }
-    if scope.variables.contains(&r#as.value) || scope.is_param(&r#as.value) {
+    if scope.loops.variables.contains(&r#as.value) || scope.is_param(&r#as.value) {
         let reason = format!("`{}` is already the name of a parameter or of an outer loop's index", r#as.value);
         bad(scope, name, reason, Some("choose another name under `as`"), r#as.span);
     }
@@ -27,7 +29,7 @@ pub(super) fn repeat(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Opti
         bad(scope, name, "this loop repeats no pass".to_owned(), None, name.span);
     }
     if *batched {
-        if scope.spread {
+        if scope.loops.spread {
             let hint = Some("spread the batched loop itself, or leave `batched` out");
             bad(scope, name, "a batched loop can't stand in a loop that spreads over frames".to_owned(), hint, name.span);
         }
@@ -35,15 +37,15 @@ pub(super) fn repeat(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Opti
             let hint = Some("leave the first level out, or `batched`");
             bad(scope, name, "the iterations of a batched loop are counted from 0".to_owned(), hint, from.span);
         }
-        scope.batched = Some(r#as.value.clone());
+        scope.loops.batched = Some(r#as.value.clone());
     }
-    let outer = scope.spread;
-    scope.spread |= run.is_some();
-    scope.variables.push(r#as.value.clone());
+    let outer = scope.loops.spread;
+    scope.loops.spread |= run.is_some();
+    scope.loops.variables.push(r#as.value.clone());
     let items = items(scope, passes);
-    scope.variables.pop();
-    scope.spread = outer;
-    scope.batched = None;
+    scope.loops.variables.pop();
+    scope.loops.spread = outer;
+    scope.loops.batched = None;
     Some(RepeatDecl {
         name: located(name),
         condition: condition?,
@@ -51,6 +53,7 @@ pub(super) fn repeat(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Opti
         variable: r#as.value.clone(),
         batched: *batched,
         spread: spread?,
+        after,
         items,
     })
 }
@@ -58,7 +61,7 @@ pub(super) fn repeat(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Opti
 /// `Some(None)` where iterations run like other passes, `None` where what is given is wrong.
 fn spread(scope: &mut Scope<'_>, name: &Text, run: Option<&Spanned<RepeatRunDoc>>) -> Option<Option<SpreadDecl>> {
     let Some(run) = run else { return Some(None) };
-    if scope.spread {
+    if scope.loops.spread {
         scope.report(ValidateError::BadRun {
             pass: name.value.clone(),
             reason: "a loop around it spreads its iterations over frames already".to_owned(),
@@ -82,7 +85,7 @@ fn each(scope: &mut Scope<'_>, name: &Text, each: &Spanned<EachDoc>) -> Option<E
         EachDoc::Axis => Each::Axis,
         EachDoc::Face(cube) => {
             let resource = texture(scope, name, cube)?;
-            if !matches!(scope.declared.get(resource.index()), Some(ResourceDoc::Texture { dimension: DimensionDoc::Cube, .. })) {
+            if !matches!(scope.declaration(resource), Some(Declared::Texture(DimensionDoc::Cube, _))) {
                 let hint = Some("loop over a count instead");
                 bad(scope, name, format!("`{}` has no faces: it is not a cube texture", cube.value), hint, cube.span);
                 return None;
@@ -117,7 +120,7 @@ fn optional(scope: &mut Scope<'_>, expr: Option<&Expr>) -> Option<Option<super::
 fn texture(scope: &mut Scope<'_>, name: &Text, text: &Text) -> Option<ResourceId> {
     let part = scope.part(text)?;
     let is_part = part.mip.is_some() || part.layer.is_some() || part.version.is_some();
-    let is_texture = matches!(scope.declared.get(part.resource.index()), Some(ResourceDoc::Texture { .. }));
+    let is_texture = matches!(scope.declaration(part.resource), Some(Declared::Texture(..)));
     if is_part || !is_texture {
         let reason = format!("`{}` is {}", text.value, if is_part { "a part of a texture" } else { "no texture" });
         bad(scope, name, reason, Some("a loop over faces, layers or mips names a whole texture"), text.span);

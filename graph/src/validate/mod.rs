@@ -1,70 +1,113 @@
-//! Document to validated document: names resolved, expressions parsed, everything wrong reported at once.
+//! Documents to a validated document: names resolved, expressions parsed, everything wrong reported at once.
 //!
 //! Guarantees: every reference is a typed id that may be used as an index; every expression names only what is visible where it
 //! stands; formats exist; sizes fit dimensions; clear values fit formats. What depends on the value of an expression is checked
 //! by the next step.
 
+mod blocks;
 mod error;
+mod instances;
 mod loops;
 mod params;
 mod passes;
+mod references;
 mod resources;
 mod scope;
 pub mod types;
 
 pub use error::ValidateError;
+pub(crate) use references::without_indices;
 pub(crate) use resources::clear_fits;
-pub(crate) use scope::without_indices;
 
 use crate::diagnostic::{Diagnostic, has_errors};
-use crate::expand::types::{Located, ResourceId};
+use crate::expand::types::Located;
+use crate::load::Loaded;
 use crate::published::PublishedSchema;
-use crate::source::{FileId, Span};
-use crate::syntax::document::Document;
+use crate::source::Span;
 use scope::Scope;
 use types::Validated;
 
-/// Resolves every name of a document.
-pub fn validate(document: &Document, file: FileId, published: &PublishedSchema) -> Result<Validated, Vec<Diagnostic>> {
+/// Resolves every name of a pipeline and its blocks.
+///
+/// # Errors
+/// Everything that is wrong with it.
+pub fn validate(loaded: &Loaded, published: &PublishedSchema) -> Result<Validated, Vec<Diagnostic>> {
+    let (instances, declared) = instances::instances(loaded);
+    let params = instances.iter().flat_map(|instance| instance.document().params.values());
+    let words = params.flat_map(|param| param.options.iter().flat_map(|options| options.value.iter().map(String::as_str)));
     let mut scope = Scope {
-        resources: document.resources.keys().enumerate().map(|(index, name)| (name.value.as_str(), ResourceId(index as u32))).collect(),
-        params: document.params.keys().map(|name| name.value.as_str()).collect(),
-        words: document
-            .params
-            .values()
-            .flat_map(|param| param.options.iter().flat_map(|options| options.value.iter().map(String::as_str)))
-            .collect(),
+        instances: &instances,
+        current: 0,
+        declared: &declared,
+        words: words.collect(),
         counts: &published.counts,
-        passes: Vec::new(),
-        variables: Vec::new(),
-        declared: document.resources.values().collect(),
-        histories: Vec::new(),
         collections: &published.collections,
-        batched: None,
-        spread: false,
+        histories: Vec::new(),
+        loops: Default::default(),
+        following: Vec::new(),
         problems: Vec::new(),
     };
-    passes::paths(&document.passes, "", 0, &mut scope.passes);
-    let start = Span::new(file, 0, 1);
-    for (what, empty) in [("passes", document.passes.is_empty()), ("outputs", document.outputs.is_empty())] {
-        if empty {
-            scope.report(ValidateError::Empty { what, span: start });
-        }
+    let (mut blocks, mut params, mut resources) = (Vec::new(), Vec::new(), Vec::new());
+    for index in 0..instances.len() {
+        blocks.push(blocks::usage(&mut scope, index));
+        scope.within(index, |scope| {
+            check_document(scope);
+            params.extend(blocks::params(scope));
+            let declared = scope.document().resources.iter();
+            resources.extend(declared.filter_map(|(name, doc)| resources::resource(scope, name, doc)));
+        });
     }
-    let params = document.params.iter().filter_map(|(name, doc)| params::param(&mut scope, name, doc)).collect();
-    let resources = document.resources.iter().filter_map(|(name, doc)| resources::resource(&mut scope, name, doc)).collect();
-    let items = passes::items(&mut scope, &document.passes);
+    let items = blocks::items(&mut scope, 0);
+    let document = &loaded.document;
     let mut outputs = Vec::new();
-    for (name, reference) in &document.outputs {
-        scope.check_name(name);
-        if let Some(part) = scope.part(reference) {
-            outputs.push((Located { value: name.value.clone(), span: name.span }, part));
-        }
+    for instance in (0..instances.len()).rev() {
+        // Those of blocks are checked, too, whether somebody reads them or not.
+        outputs = scope.within(instance, outputs_of);
     }
     let retained_budget = document.retained_budget.as_ref().and_then(|budget| scope.expression(budget));
     let Scope { problems, histories, .. } = scope;
     if has_errors(&problems) {
         return Err(problems);
     }
-    Ok(Validated { doc: document.doc.clone(), params, resources, items, outputs, histories, retained_budget })
+    let inputs = document.inputs.keys().map(passes::located).collect();
+    let blocks = blocks.into_iter().flatten().collect();
+    Ok(Validated { doc: document.doc.clone(), params, resources, blocks, inputs, items, outputs, histories, retained_budget })
+}
+
+/// What holds for a file as a whole.
+fn check_document(scope: &mut Scope<'_>) {
+    let document = scope.document();
+    let start = Span::new(scope.instance().loaded.file, 0, 1);
+    let nothing_runs = document.passes.is_empty() && document.blocks.is_empty();
+    for (what, empty) in [("passes", nothing_runs), ("outputs", document.outputs.is_empty())] {
+        if empty {
+            scope.report(ValidateError::Empty { what, span: start });
+        }
+    }
+    let resources = document.resources.keys().map(|name| (name, "a resource"));
+    let mut names: Vec<_> = resources.chain(document.inputs.keys().map(|name| (name, "an input"))).collect();
+    for name in document.blocks.keys() {
+        if let Some((pass, _)) = document.passes.get_key_value(name) {
+            let ambiguous = ValidateError::Ambiguous { name: name.value.clone(), first: "a block", second: "a pass", span: pass.span };
+            scope.report(ambiguous);
+        }
+        names.push((name, "a block"));
+    }
+    for (index, (name, second)) in names.iter().enumerate().skip(document.resources.len()) {
+        scope.check_name(name);
+        if let Some((_, first)) = names[..index].iter().find(|(other, _)| other == name) {
+            scope.report(ValidateError::Ambiguous { name: name.value.clone(), first, second, span: name.span });
+        }
+    }
+}
+
+fn outputs_of(scope: &mut Scope<'_>) -> Vec<(Located<String>, types::PartExpr)> {
+    let mut outputs = Vec::new();
+    for (name, reference) in &scope.document().outputs {
+        scope.check_name(name);
+        if let Some(part) = scope.part(reference) {
+            outputs.push((passes::located(name), part));
+        }
+    }
+    outputs
 }

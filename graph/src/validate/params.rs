@@ -72,7 +72,8 @@ pub(super) fn param(scope: &mut Scope<'_>, name: &Text, doc: &ParamDoc) -> Optio
         }
     }
     Some(ParamDecl {
-        name: Located { value: name.value.clone(), span: name.span },
+        name: Located { value: format!("{}{}", scope.instance().path, name.value), span: name.span },
+        given: None,
         default,
         range,
         options,

@@ -35,7 +35,7 @@ pub(super) fn items(scope: &mut Scope<'_>, passes: &Entries<PassDoc>) -> Vec<Ite
 
 fn item(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<Item> {
     scope.check_name(name);
-    if scope.batched.is_some() && !matches!(pass, PassDoc::Compute { .. }) {
+    if scope.loops.batched.is_some() && !matches!(pass, PassDoc::Compute { .. }) {
         let hint = "the iterations of a batched loop run as one dispatch: move the pass out of it, or leave `batched` out";
         bad(scope, name, "a batched loop holds only Compute passes".to_owned(), Some(hint), name.span);
         return None;
@@ -241,7 +241,9 @@ fn finish(scope: &mut Scope<'_>, name: &Text, common: Common<'_>, kind: Option<P
                 bad(scope, name, "`@pass` names a value to read, and nothing can be written there".to_owned(), None, version.span);
                 continue;
             }
-            found.push((slot, part));
+            // What is written is the block's own, whether it stands or not.
+            let otherwise = if writes { Vec::new() } else { part.otherwise };
+            found.push((slot, PartExpr { otherwise, ..part }));
         }
         found
     };
@@ -262,9 +264,10 @@ fn finish(scope: &mut Scope<'_>, name: &Text, common: Common<'_>, kind: Option<P
             constants.push((located(constant), value));
         }
     }
-    let after = common.after.iter().filter_map(|path| scope.pass_path(&path.value, path.span)).collect();
+    let after = after(scope, common.after);
     Some(PassDecl {
         name: located(name),
+        file: scope.instance().loaded.placed.get(&name.span).copied().unwrap_or(name.span.file),
         condition: condition?,
         kind: kind?,
         shader: common.shader.map(located),
@@ -298,7 +301,7 @@ fn indirect(scope: &mut Scope<'_>, name: &Text, doc: &Spanned<IndirectDoc>, slot
 }
 
 fn run(scope: &mut Scope<'_>, name: &Text, doc: &Spanned<RunDoc>) -> Option<RunDecl> {
-    if scope.spread && doc.value != RunDoc::OnChange {
+    if scope.loops.spread && doc.value != RunDoc::OnChange {
         scope.report(ValidateError::BadRun {
             pass: name.value.clone(),
             reason: "a loop around it says when its iterations run".to_owned(),
@@ -377,6 +380,11 @@ fn filter(objects: ObjectsDoc) -> DrawFilter {
         ObjectsDoc::Blended => DrawFilter::Blended,
         ObjectsDoc::All => DrawFilter::All,
     }
+}
+
+/// Passes that must come first.
+pub(super) fn after(scope: &mut Scope<'_>, paths: &[Text]) -> Vec<Located<String>> {
+    paths.iter().filter_map(|path| scope.pass_path(&path.value, path.span)).collect()
 }
 
 pub(super) fn located(text: &Text) -> Located<String> {

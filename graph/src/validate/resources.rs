@@ -12,7 +12,7 @@ use crate::syntax::spanned::Spanned;
 /// Checks one resource.
 pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) -> Option<ResourceDecl> {
     scope.check_name(name);
-    let located = Located { value: name.value.clone(), span: name.span };
+    let located = Located { value: format!("{}{}", scope.instance().path, name.value), span: name.span };
     match doc {
         ResourceDoc::Buffer { size, clear, history, keep, .. } => {
             let size = scope.expression(size)?;

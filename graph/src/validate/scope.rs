@@ -1,48 +1,57 @@
-//! The names that are visible at a place, and the texts that use them: expressions and references.
-
-use std::collections::HashMap;
+//! The names that are visible at a place, and the expressions that use them.
+//!
+//! A file sees its own names alone. What they stand for is known to all: in a checked expression a parameter has its whole path
+//! (`shadows.texels`), the index of a loop is marked (`@face`), and the extent of a resource has its number (`$3.width`).
 
 use indexmap::IndexMap;
 
 use super::error::ValidateError;
-use super::types::{PartExpr, PlacedExpr};
+use super::instances::{Declared, Instance};
+use super::types::PlacedExpr;
 use crate::diagnostic::Diagnostic;
 use crate::expand::types::{Located, ResourceId, Value};
 use crate::expression::{self, Expression};
 use crate::published::Collection;
 use crate::source::Span;
-use crate::syntax::document::{Expr, ExprDoc, ResourceDoc, Text};
+use crate::syntax::document::{Document, Expr, ExprDoc, Text};
 
 /// What names mean, and the problems found so far.
 pub(super) struct Scope<'a> {
-    /// Resource ids by name.
-    pub resources: HashMap<&'a str, ResourceId>,
-    /// Parameter names in the order of the file.
-    pub params: Vec<&'a str>,
+    /// Every document at every place.
+    pub instances: &'a [Instance<'a>],
+    /// The one whose names are visible.
+    pub current: usize,
+    /// What is known of resources, by id.
+    pub declared: &'a [Declared],
     /// Words of parameters' options, for comparisons.
     pub words: Vec<&'a str>,
     /// Names of scene counts.
     pub counts: &'a [String],
-    /// Paths of all passes and loops: `faces`, `faces.draw`.
-    pub passes: Vec<String>,
-    /// Loop variables, outermost first.
-    pub variables: Vec<String>,
-    /// Declarations by [`ResourceId`].
-    pub declared: Vec<&'a ResourceDoc>,
-    /// Resources whose past is read.
-    pub histories: Vec<Located<ResourceId>>,
     /// What loops may run over.
     pub collections: &'a IndexMap<String, Collection>,
-    /// The index of the batched loop around.
-    pub batched: Option<String>,
-    /// Whether a loop around spreads its iterations over frames.
-    pub spread: bool,
+    /// Resources whose past is read.
+    pub histories: Vec<Located<ResourceId>>,
+    /// The loops around.
+    pub loops: Loops,
+    /// References that are being followed, by instance and text.
+    pub following: Vec<(usize, String)>,
     /// Everything wrong.
     pub problems: Vec<Diagnostic>,
 }
 
-/// Begins a reference to what a resource held at the end of the frame before.
-const PREVIOUS: &str = "previous(";
+/// The loops around a place.
+#[derive(Debug, Default)]
+pub(super) struct Loops {
+    /// Their variables, outermost first.
+    pub variables: Vec<String>,
+    /// The index of the batched one.
+    pub batched: Option<String>,
+    /// Whether one spreads its iterations over frames.
+    pub spread: bool,
+}
+
+/// What can be said of a resource's extent in an expression.
+const EXTENTS: [&str; 5] = ["width", "height", "depth", "layers", "mips"];
 
 /// Names start with a letter and hold letters, digits and underscores.
 pub(super) fn is_name(text: &str) -> bool {
@@ -50,7 +59,7 @@ pub(super) fn is_name(text: &str) -> bool {
 }
 
 /// Where a byte range of a string literal's value stands in the file. Exact unless the literal has escapes.
-fn inside(span: Span, range: &std::ops::Range<usize>, length: usize) -> Span {
+pub(super) fn inside(span: Span, range: &std::ops::Range<usize>, length: usize) -> Span {
     let quoted = length + 2 == (span.end - span.start) as usize;
     if !quoted || !span.is_somewhere() {
         return span;
@@ -61,15 +70,44 @@ fn inside(span: Span, range: &std::ops::Range<usize>, length: usize) -> Span {
     Span::new(span.file, start, end)
 }
 
-impl Scope<'_> {
-    /// Whether a parameter has this name.
-    pub fn is_param(&self, name: &str) -> bool {
-        self.params.contains(&name)
+impl<'a> Scope<'a> {
+    /// The instance whose names are visible.
+    pub fn instance(&self) -> &'a Instance<'a> {
+        &self.instances[self.current]
     }
 
-    /// Records a problem.
+    /// Its document.
+    pub fn document(&self) -> &'a Document {
+        self.instance().document()
+    }
+
+    /// Does something with the names of another instance.
+    pub fn within<T>(&mut self, instance: usize, work: impl FnOnce(&mut Self) -> T) -> T {
+        let current = std::mem::replace(&mut self.current, instance);
+        let loops = std::mem::take(&mut self.loops);
+        let result = work(self);
+        self.current = current;
+        self.loops = loops;
+        result
+    }
+
+    /// Whether a parameter has this name.
+    pub fn is_param(&self, name: &str) -> bool {
+        self.document().params.contains_key(name)
+    }
+
+    /// Records a problem. One of a block is recorded once, however often the block stands.
     pub fn report(&mut self, error: ValidateError) {
-        self.problems.push(error.into());
+        let mut problem = Diagnostic::from(error);
+        let known = |other: &Diagnostic| (other.code, &other.message, &other.primary) == (problem.code, &problem.message, &problem.primary);
+        if self.instances.len() > 1 && self.problems.iter().any(known) {
+            return;
+        }
+        let path = self.instance().path.trim_end_matches('.');
+        if !path.is_empty() {
+            problem = problem.note(format!("in the block `{path}`"));
+        }
+        self.problems.push(problem);
     }
 
     /// Whether a text is a fit name; reports it if not.
@@ -92,10 +130,10 @@ impl Scope<'_> {
             ExprDoc::Float(value) => Expression::Literal(Value::Float(*value)),
             ExprDoc::Text(text) => self.parse(text, expr.span, 0, text.len())?,
         };
-        if let Some(variable) = &self.batched {
+        if let Some(variable) = &self.loops.batched {
             let mut names = Vec::new();
             expression.names(&mut names);
-            if names.iter().any(|(name, _)| name == variable) {
+            if names.iter().any(|(name, _)| name.strip_prefix('@') == Some(variable)) {
                 self.report(ValidateError::BatchedIndex { variable: variable.clone(), span: expr.span });
                 return None;
             }
@@ -104,9 +142,9 @@ impl Scope<'_> {
     }
 
     /// Parses a part of a string literal as an expression.
-    fn parse(&mut self, text: &str, span: Span, offset: usize, length: usize) -> Option<Expression> {
+    pub fn parse(&mut self, text: &str, span: Span, offset: usize, length: usize) -> Option<Expression> {
         let place = |range: &std::ops::Range<usize>| inside(span, &(range.start + offset..range.end + offset), length);
-        let expression = match expression::parse(text) {
+        let mut expression = match expression::parse(text) {
             Ok(expression) => expression,
             Err(error) => {
                 let span = place(&error.range);
@@ -117,9 +155,13 @@ impl Scope<'_> {
         let mut names = Vec::new();
         expression.names(&mut names);
         let mut known = true;
+        let mut meanings = Vec::with_capacity(names.len());
         for (name, range) in names {
-            known &= self.check_expression_name(&name, place(&range));
+            let meaning = self.expression_name(&name, place(&range));
+            known &= meaning.is_some();
+            meanings.push(meaning.unwrap_or(name));
         }
+        expression.rename(&mut meanings.into_iter());
         let mut words = Vec::new();
         expression.words(&mut words);
         for word in words {
@@ -132,188 +174,42 @@ impl Scope<'_> {
         known.then_some(expression)
     }
 
-    fn check_expression_name(&mut self, name: &str, span: Span) -> bool {
-        let is_param = self.params.contains(&name);
-        let is_variable = self.variables.iter().any(|variable| variable == name);
-        if is_param && is_variable {
-            self.report(ValidateError::Ambiguous { name: name.to_owned(), first: "a parameter", second: "a loop variable", span });
-            return false;
+    /// What a name of an expression stands for.
+    fn expression_name(&mut self, name: &str, span: Span) -> Option<String> {
+        let is_variable = self.loops.variables.iter().any(|variable| variable == name);
+        match (self.is_param(name), is_variable) {
+            (true, true) => {
+                self.report(ValidateError::Ambiguous { name: name.to_owned(), first: "a parameter", second: "a loop variable", span });
+                return None;
+            }
+            (true, false) => return Some(format!("{}{name}", self.instance().path)),
+            (false, true) => return Some(format!("@{name}")),
+            (false, false) => {}
         }
-        if is_param || is_variable || name == "output.width" || name == "output.height" {
-            return true;
+        if name == "output.width" || name == "output.height" {
+            return Some(name.to_owned());
         }
         if let Some(count) = name.strip_prefix("scene.") {
             if self.counts.iter().any(|known| known == count) {
-                return true;
+                return Some(name.to_owned());
             }
             self.report(ValidateError::Unknown { what: "scene count", name: count.to_owned(), known: self.counts.to_vec(), span });
-            return false;
-        }
-        let known = self.params.iter().map(|param| (*param).to_owned()).chain(self.variables.iter().cloned());
-        let known = known.chain(["output.width".to_owned(), "output.height".to_owned()]).collect();
-        self.report(ValidateError::Unknown { what: "parameter or loop variable", name: name.to_owned(), known, span });
-        false
-    }
-
-    /// Parses a reference such as `radiance.mip(m - 1)` and resolves its resource.
-    pub fn part(&mut self, text: &Text) -> Option<PartExpr> {
-        let value = text.value.as_str();
-        if value.trim_start().starts_with(PREVIOUS) {
-            self.report(ValidateError::BadPrevious {
-                text: value.to_owned(),
-                reason: "the past can only stand under `read`",
-                hint: "a Copy can keep it: `Copy(read: \"previous(x)\", write: ..)`",
-                span: text.span,
-            });
             return None;
         }
-        self.reference(text)
-    }
-
-    /// Parses a reference under `read`, where the past may stand: `previous(radiance).mip(0)`.
-    pub fn readable(&mut self, text: &Text) -> Option<PartExpr> {
-        let value = text.value.as_str();
-        let Some(rest) = value.trim_start().strip_prefix(PREVIOUS) else { return self.reference(text) };
-        let bad = |reason, hint| ValidateError::BadPrevious { text: value.to_owned(), reason, hint, span: text.span };
-        if rest.trim_start().starts_with(PREVIOUS) {
-            self.report(bad("the past of the past is not kept", "copy the past to a resource of its own, and read the past of that one"));
-            return None;
-        }
-        if value.contains('@') {
-            self.report(bad("the past is the value at the end of the frame before", "leave `@` and the pass out"));
-            return None;
-        }
-        let Some((inner, selectors)) = rest.split_once(')') else {
-            self.report(bad("it has no closing `)`", "write `previous(name)`, and parts behind it: `previous(name).mip(0)`"));
-            return None;
-        };
-        let start = value.len() - rest.len();
-        if inner.contains('(') {
-            self.report(bad("a part stands inside of the brackets", "write parts behind them: `previous(name).mip(0)`"));
-            return None;
-        }
-        let source = self.name(inner.trim(), text, start..start + inner.len())?;
-        let known = self.histories.iter().position(|history| history.value == source);
-        let index = known.unwrap_or_else(|| {
-            self.histories.push(Located { value: source, span: text.span });
-            self.histories.len() - 1
-        });
-        let id = ResourceId((self.declared.len() + index) as u32);
-        self.selectors(text, id, value.len() - selectors.len(), value)
-    }
-
-    /// The resource of a name that stands in a range of a reference.
-    fn name(&mut self, name: &str, text: &Text, range: std::ops::Range<usize>) -> Option<ResourceId> {
-        if !is_name(name) {
-            let reason = format!("`{name}` is not a name");
-            self.report(ValidateError::BadReference { text: text.value.clone(), reason, span: text.span });
-            return None;
-        }
-        let found = self.resources.get(name).copied();
-        if found.is_none() {
-            let known = self.sorted_resources();
-            let span = inside(text.span, &range, text.value.len());
-            self.report(ValidateError::Unknown { what: "resource", name: name.to_owned(), known, span });
-        }
-        found
-    }
-
-    fn reference(&mut self, text: &Text) -> Option<PartExpr> {
-        let value = text.value.as_str();
-        let (reference, version) = match value.split_once('@') {
-            Some((reference, version)) => (reference, Some(version.trim())),
-            None => (value, None),
-        };
-        let name_end = reference.find('.').unwrap_or(reference.len());
-        let resource = self.name(reference[..name_end].trim(), text, 0..name_end)?;
-        let mut part = self.selectors(text, resource, name_end, reference)?;
-        if let Some(version) = version {
-            let place = inside(text.span, &(reference.len() + 1..value.len()), value.len());
-            part.version = Some(self.pass_path(version, place)?);
-        }
-        Some(part)
-    }
-
-    /// `.mip(m).face(f)`, from a byte of a reference to its end.
-    fn selectors(&mut self, text: &Text, resource: ResourceId, start: usize, reference: &str) -> Option<PartExpr> {
-        let value = text.value.as_str();
-        let bad = |reason: String| ValidateError::BadReference { text: value.to_owned(), reason, span: text.span };
-        let mut part = PartExpr { resource, mip: None, layer: None, version: None, span: text.span };
-        let mut at = start;
-        while at < reference.len() {
-            let rest = &reference[at..];
-            let Some((selector, index)) = rest.strip_prefix('.').and_then(|rest| rest.split_once('(')) else {
-                self.report(bad(format!("expected `.mip(i)`, `.layer(i)` or `.face(i)`, found `{rest}`")));
-                return None;
-            };
-            let Some(length) = closing(index) else {
-                self.report(bad(format!("`.{selector}(` has no closing `)`")));
-                return None;
-            };
-            let start = at + 1 + selector.len() + 1;
-            let expression = self.parse(&index[..length], text.span, start, value.len())?;
-            let target = match selector {
-                "mip" => &mut part.mip,
-                "layer" | "face" => &mut part.layer,
-                other => {
-                    self.report(bad(format!("there is no `.{other}(i)`")));
-                    return None;
-                }
-            };
-            if target.is_some() {
-                self.report(bad(format!("`.{selector}(i)` stands twice")));
+        if let Some((resource, extent)) = name.rsplit_once('.')
+            && EXTENTS.contains(&extent)
+        {
+            let part = self.resolve(resource, span)?;
+            if part.mip.is_some() || part.layer.is_some() || !part.otherwise.is_empty() {
+                let reason = format!("`{resource}` stands for a part, or for another resource at times, and extents are those of a whole one");
+                self.report(ValidateError::BadExpression { text: name.to_owned(), reason, span });
                 return None;
             }
-            *target = Some(PlacedExpr { expression, span: text.span });
-            at = start + length + 1;
+            return Some(format!("${}.{extent}", self.source_of(part.resource).0));
         }
-        Some(part)
-    }
-
-    /// Checks that a path names a pass: `shade`, `faces.draw`, `faces[3].draw`.
-    pub fn pass_path(&mut self, path: &str, span: Span) -> Option<Located<String>> {
-        let plain = without_indices(path);
-        let exists =
-            self.passes.iter().any(|known| *known == plain || known.strip_suffix(&plain).is_some_and(|outer| outer.ends_with('.')));
-        if exists {
-            return Some(Located { value: path.to_owned(), span });
-        }
-        let known = self.passes.clone();
-        self.report(ValidateError::Unknown { what: "pass", name: path.to_owned(), known, span });
+        let known = self.document().params.keys().map(|param| param.value.clone()).chain(self.loops.variables.iter().cloned());
+        let known = known.chain(["output.width".to_owned(), "output.height".to_owned()]).collect();
+        self.report(ValidateError::Unknown { what: "parameter or loop variable", name: name.to_owned(), known, span });
         None
     }
-
-    /// Resource names in the order of the file.
-    fn sorted_resources(&self) -> Vec<String> {
-        let mut names: Vec<_> = self.resources.iter().map(|(name, id)| (*id, (*name).to_owned())).collect();
-        names.sort();
-        names.into_iter().map(|(_, name)| name).collect()
-    }
-}
-
-/// `faces[3].draw` without `[3]`.
-pub(crate) fn without_indices(path: &str) -> String {
-    let mut depth = 0;
-    path.chars()
-        .filter(|c| {
-            depth += i32::from(*c == '[');
-            let keep = depth == 0;
-            depth -= i32::from(*c == ']');
-            keep
-        })
-        .collect()
-}
-
-/// The length of the text before the parenthesis that closes an open one.
-fn closing(text: &str) -> Option<usize> {
-    let mut depth = 0usize;
-    for (at, c) in text.char_indices() {
-        match c {
-            '(' => depth += 1,
-            ')' if depth == 0 => return Some(at),
-            ')' => depth -= 1,
-            _ => {}
-        }
-    }
-    None
 }

@@ -5,7 +5,7 @@ use crate::expression::Expression;
 use crate::format::Format;
 use crate::plan::Cull;
 use crate::published::DrawFilter;
-use crate::source::Span;
+use crate::source::{FileId, Span};
 use crate::syntax::document::{BlendDoc, DepthDoc};
 
 /// A document whose every name stands for something.
@@ -17,7 +17,11 @@ pub struct Validated {
     pub params: Vec<ParamDecl>,
     /// By [`ResourceId`].
     pub resources: Vec<ResourceDecl>,
-    /// Passes and loops in the order of the file.
+    /// Blocks, each behind the one that uses it.
+    pub blocks: Vec<BlockDecl>,
+    /// What it is given, if it is a block that stands alone. It can be checked, and not expanded.
+    pub inputs: Vec<Located<String>>,
+    /// Blocks, then passes and loops in the order of the file.
     pub items: Vec<Item>,
     /// Outputs in the order of the file.
     pub outputs: Vec<(Located<String>, PartExpr)>,
@@ -30,8 +34,10 @@ pub struct Validated {
 /// A parameter.
 #[derive(Debug, Clone, PartialEq)]
 pub struct ParamDecl {
-    /// Its name.
+    /// Its name, with the path of its block.
     pub name: Located<String>,
+    /// The value that whoever uses its block gives it.
+    pub given: Option<PlacedExpr>,
     /// Its default; decides the type.
     pub default: Value,
     /// Smallest and largest value.
@@ -124,16 +130,42 @@ pub struct PartExpr {
     pub layer: Option<PlacedExpr>,
     /// `@pass`
     pub version: Option<Located<String>>,
+    /// What is named instead where a block does not stand; the first that applies.
+    pub otherwise: Vec<Otherwise>,
     /// The whole reference.
     pub span: Span,
 }
 
-/// A pass or a loop.
+/// What is named while a block does not stand.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Otherwise {
+    /// By index into [`Validated::blocks`].
+    pub block: usize,
+    /// What takes its output's place.
+    pub part: PartExpr,
+}
+
+/// A pass, a loop, or the passes of a block.
 #[derive(Debug, Clone, PartialEq)]
 #[allow(missing_docs)]
 pub enum Item {
     Pass(Box<PassDecl>),
     Repeat(Box<RepeatDecl>),
+    /// By index into [`Validated::blocks`].
+    Block(usize, Vec<Item>),
+}
+
+/// A block at one of the places where it stands. The pipeline itself is the first.
+#[derive(Debug, Clone, PartialEq)]
+pub struct BlockDecl {
+    /// Begins the names of what it has: `shadows.`, and nothing for the pipeline.
+    pub path: String,
+    /// The one that uses it; the pipeline is its own.
+    pub parent: usize,
+    /// When it stands.
+    pub condition: Condition,
+    /// Passes that must come before all of its own, as seen by the one that uses it.
+    pub after: Vec<Located<String>>,
 }
 
 /// When a pass or loop stands.
@@ -160,6 +192,8 @@ pub struct RepeatDecl {
     pub batched: bool,
     /// Only some iterations run in a frame.
     pub spread: Option<SpreadDecl>,
+    /// Passes that must come before all of its own.
+    pub after: Vec<Located<String>>,
     /// What is repeated.
     pub items: Vec<Item>,
 }
@@ -213,6 +247,8 @@ pub enum RunDecl {
 pub struct PassDecl {
     /// Its name.
     pub name: Located<String>,
+    /// The file in whose list it stands.
+    pub file: FileId,
     /// When it stands.
     pub condition: Condition,
     /// What it does.

@@ -471,6 +471,8 @@ impl PassSpec {
         let pass = Pass {
             name,
             span,
+            block: Default::default(),
+            list: 0,
             indices: Vec::new(),
             kind: if self.remembers.is_some() {
                 PassKind::Remember

@@ -21,7 +21,7 @@ pub struct FixtureFiles;
 impl Files for FixtureFiles {
     fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError> {
         let (folder, shown) = match kind {
-            FileKind::Pipeline => (fixtures(), path.to_owned()),
+            FileKind::Pipeline | FileKind::Block => (fixtures(), path.to_owned()),
             FileKind::Shader => (fixtures().join("shaders"), format!("shaders/{path}")),
         };
         match std::fs::read_to_string(folder.join(path)) {
@@ -31,7 +31,11 @@ impl Files for FixtureFiles {
     }
 
     fn known(&self, kind: FileKind) -> Vec<String> {
-        let folder = if kind == FileKind::Shader { "shaders" } else { "plans" };
+        let folder = match kind {
+            FileKind::Shader => "shaders",
+            FileKind::Block => "blocks",
+            FileKind::Pipeline => "plans",
+        };
         let mut names: Vec<String> = std::fs::read_dir(fixtures().join(folder))
             .map(|entries| entries.flatten().map(|entry| entry.file_name().to_string_lossy().into_owned()).collect())
             .unwrap_or_default();

@@ -229,6 +229,8 @@ impl Names<'_> {
         let pass = Pass {
             name: name.clone(),
             span,
+            block: Default::default(),
+            list: 0,
             indices: Vec::new(),
             kind,
             shader: None,

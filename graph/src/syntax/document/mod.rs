@@ -3,9 +3,11 @@
 //! Names are not resolved and expressions not evaluated here; nothing later edits a document. Every type also reads with the
 //! `ron` crate (extensions `implicit_some` and `unwrap_newtypes`), which is the oracle of the reader.
 
+mod blocks;
 mod passes;
 mod resources;
 
+pub use blocks::*;
 pub use passes::*;
 pub use resources::*;
 
@@ -19,21 +21,32 @@ pub type Text = Spanned<String>;
 /// An ordered map from names to entries.
 pub type Entries<T> = IndexMap<Text, T>;
 
-/// A whole pipeline file.
+/// A whole pipeline file, or a block.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename = "Pipeline", deny_unknown_fields)]
 pub struct Document {
     /// What the pipeline computes, from which source, and its limits.
     pub doc: String,
+    /// The pipeline that this one changes.
+    #[serde(default)]
+    pub extend: Option<Box<ExtendDoc>>,
     /// What a user may set.
     #[serde(default)]
     pub params: Entries<ParamDoc>,
+    /// What a block is given.
+    #[serde(default)]
+    pub inputs: Entries<InputDoc>,
+    /// Parts that stand in files of their own.
+    #[serde(default)]
+    pub blocks: Entries<BlockDoc>,
     /// Textures and buffers.
     #[serde(default)]
     pub resources: Entries<ResourceDoc>,
     /// Passes and loops over passes.
+    #[serde(default)]
     pub passes: Entries<PassDoc>,
     /// The results, by the names under which users ask for them.
+    #[serde(default)]
     pub outputs: Entries<Text>,
     /// MiB that content may take which is kept from frame to frame though it could be made again; without limit unless said.
     #[serde(default)]

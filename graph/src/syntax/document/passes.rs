@@ -365,5 +365,22 @@ pub enum PassDoc {
         run: Option<Spanned<RepeatRunDoc>>,
         /// What is repeated.
         passes: Entries<PassDoc>,
+        /// Passes that must come first.
+        #[serde(default)]
+        after: Vec<Text>,
     },
+}
+
+impl PassDoc {
+    /// What a slot names: an output first, then an input.
+    pub fn slot(&self, name: &str) -> Option<&Text> {
+        match self {
+            PassDoc::Draw { read, write, modify, .. }
+            | PassDoc::Fullscreen { read, write, modify, .. }
+            | PassDoc::Compute { read, write, modify, .. } => [write, modify, read].into_iter().find_map(|slots| slots.get(name)),
+            PassDoc::Copy { read, .. } if name == "read" => Some(read),
+            PassDoc::Copy { write, .. } | PassDoc::Clear { write, .. } if name == "write" => Some(write),
+            _ => None,
+        }
+    }
 }
