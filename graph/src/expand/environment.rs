@@ -9,7 +9,7 @@ use crate::diagnostic::Diagnostic;
 use crate::expression::kind_of;
 use crate::published::SceneCounts;
 use crate::source::Span;
-use crate::validate::types::{BlockDecl, Condition, PlacedExpr};
+use crate::validate::types::{BlockDecl, Condition, PartExpr, PlacedExpr, Validated};
 
 /// What expressions may name, and the problems found so far.
 pub(super) struct Environment<'a> {
@@ -23,6 +23,8 @@ pub(super) struct Environment<'a> {
     pub counts: &'a SceneCounts,
     /// What is known of resources' extents, by id.
     pub shapes: Vec<Option<Shape>>,
+    /// What expressions ask the extents of.
+    measured: &'a [PartExpr],
     /// Whether blocks stand, by index.
     pub blocks: Vec<bool>,
     /// Everything wrong.
@@ -33,9 +35,10 @@ pub(super) struct Environment<'a> {
 
 impl<'a> Environment<'a> {
     /// One in which nothing has a value yet but what comes from outside.
-    pub fn new(input: &ExpandInput<'a>) -> Environment<'a> {
+    pub fn new(validated: &'a Validated, input: &ExpandInput<'a>) -> Environment<'a> {
         let (params, indices, shapes, blocks, problems, reported) = Default::default();
-        Environment { params, indices, output: input.output, counts: input.counts, shapes, blocks, problems, reported }
+        let (output, counts, measured) = (input.output, input.counts, validated.measured.as_slice());
+        Environment { params, indices, output, counts, shapes, measured, blocks, problems, reported }
     }
 
     /// Decides which blocks stand.
@@ -71,9 +74,8 @@ impl<'a> Environment<'a> {
             let index = self.indices.iter().rev().find(|(known, _)| known == variable)?.1;
             return Some(Value::Int(i64::from(index)));
         }
-        if let Some((resource, extent)) = name.strip_prefix('$').and_then(|name| name.split_once('.')) {
-            let shape = self.shapes.get(resource.parse::<usize>().ok()?)?.as_ref()?;
-            return Some(Value::Int(shape.extent(extent) as i64));
+        if let Some((measured, extent)) = name.strip_prefix('$').and_then(|name| name.split_once('.')) {
+            return self.extent(self.measured.get(measured.parse::<usize>().ok()?)?, extent);
         }
         match name {
             "output.width" => return Some(Value::Int(i64::from(self.output[0]))),
@@ -84,6 +86,33 @@ impl<'a> Environment<'a> {
             return Some(Value::Int(i64::from(self.counts.get(count).copied().unwrap_or(0))));
         }
         self.params.iter().find(|param| param.name == name).map(|param| param.value.clone())
+    }
+
+    /// What takes a part's place while a block does not stand, or the part.
+    pub fn present<'p>(&self, part: &'p PartExpr) -> &'p PartExpr {
+        match part.otherwise.iter().find(|instead| self.blocks.get(instead.block) == Some(&false)) {
+            Some(instead) => self.present(&instead.part),
+            None => part,
+        }
+    }
+
+    fn extent(&self, part: &PartExpr, extent: &str) -> Option<Value> {
+        let part = self.present(part);
+        let shape = self.shapes.get(part.resource.index())?.as_ref()?;
+        let mip = match &part.mip {
+            None => 0,
+            Some(mip) => match mip.expression.evaluate(&|name| self.lookup(name)) {
+                Ok(Value::Int(mip)) => u32::try_from(mip).ok().filter(|mip| u64::from(*mip) < shape.extent("mips"))?,
+                _ => return None,
+            },
+        };
+        let value = match extent {
+            "layers" if part.layer.is_some() => 1,
+            "mips" if part.mip.is_some() => 1,
+            "layers" | "mips" => shape.extent(extent),
+            _ => (shape.extent(extent) >> mip).max(1),
+        };
+        Some(Value::Int(value as i64))
     }
 
     /// The value of an expression. `what` names it in messages: "the width of `radiance`".

@@ -2,17 +2,18 @@
 
 use super::environment::Environment;
 use super::error::ExpandError;
-use crate::validate::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
+use crate::validate::types::{Mips, PartExpr, PlacedExpr, ResourceDecl, ResourceKind, Size, Validated};
 
 /// Indices of all resources, in the order of the file where nothing is against it; `None` where sizes depend on themselves.
-pub(super) fn order(environment: &mut Environment<'_>, decls: &[ResourceDecl]) -> Option<Vec<usize>> {
+pub(super) fn order(environment: &mut Environment<'_>, validated: &Validated) -> Option<Vec<usize>> {
+    let decls = &validated.resources;
     let mut ordered = Vec::with_capacity(decls.len());
     let mut done = vec![false; decls.len()];
     for start in 0..decls.len() {
         // Those that wait for others, each for the next.
         let mut waiting = vec![start];
         while let Some(index) = waiting.last().copied() {
-            let next = named(&decls[index]).find(|other| done.get(*other) == Some(&false));
+            let next = named(&decls[index], &validated.measured).find(|other| done.get(*other) == Some(&false));
             match next {
                 _ if done[index] => {}
                 None => {
@@ -38,12 +39,23 @@ pub(super) fn order(environment: &mut Environment<'_>, decls: &[ResourceDecl]) -
 }
 
 /// The resources that the size of one names.
-pub(super) fn named(decl: &ResourceDecl) -> impl Iterator<Item = usize> {
+pub(super) fn named(decl: &ResourceDecl, measured: &[PartExpr]) -> impl Iterator<Item = usize> {
     let mut names = Vec::new();
     for expr in expressions(&decl.kind) {
         expr.expression.names(&mut names);
     }
-    names.into_iter().filter_map(|(name, _)| name.strip_prefix('$')?.split_once('.')?.0.parse().ok())
+    let mut found = Vec::new();
+    for (name, _) in &names {
+        let index = name.strip_prefix('$').and_then(|name| name.split_once('.')?.0.parse::<usize>().ok());
+        index.and_then(|index| measured.get(index)).into_iter().for_each(|part| resources(part, &mut found));
+    }
+    found.into_iter()
+}
+
+/// A part's resource, and those that may take its place.
+fn resources(part: &PartExpr, found: &mut Vec<usize>) {
+    found.push(part.resource.index());
+    part.otherwise.iter().for_each(|otherwise| resources(&otherwise.part, found));
 }
 
 fn expressions(kind: &ResourceKind) -> Vec<&PlacedExpr> {

@@ -46,13 +46,13 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     if !validated.inputs.is_empty() {
         return Err(vec![ExpandError::BlockAlone { inputs: validated.inputs.clone() }.into()]);
     }
-    let mut environment = Environment::new(input);
+    let mut environment = Environment::new(validated, input);
     params::values(&mut environment, &validated.params, input.sets);
+    environment.decide(&validated.blocks);
     // Sizes name parameters, and parts can only be checked against resources that are all there.
-    let Some(mut resources) = resources::resources(&mut environment, &validated.resources, input.device) else {
+    let Some(mut resources) = resources::resources(&mut environment, validated, input.device) else {
         return Err(environment.problems);
     };
-    environment.decide(&validated.blocks);
     histories::resources(&validated.histories, &validated.resources, &mut resources);
     let (mut passes, spreads) = passes::passes(&mut environment, validated, &resources);
     histories::passes(&validated.histories, &resources, &mut passes);

@@ -346,9 +346,7 @@ fn fits(pattern: &str, name: &str, groups: bool) -> bool {
 /// Computes the indices of a reference and checks them against its resource.
 /// Where a block does not stand, what takes its place.
 pub(super) fn reference(environment: &mut Environment<'_>, resources: &[Resource], part: &PartExpr, pass: &str) -> Option<PartRef> {
-    if let Some(instead) = part.otherwise.iter().find(|instead| environment.blocks.get(instead.block) == Some(&false)) {
-        return reference(environment, resources, &instead.part, pass);
-    }
+    let part = environment.present(part);
     let resource = &resources[part.resource.index()];
     let mut index = |expr: &Option<PlacedExpr>, what: &'static str, count: Option<u32>| -> Option<Option<u32>> {
         let Some(expr) = expr else { return Some(None) };

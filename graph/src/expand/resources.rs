@@ -6,15 +6,16 @@ use super::extents;
 use super::types::{Dimension, Resource, Shape, TextureShape};
 use crate::device::DeviceFacts;
 use crate::source::Span;
-use crate::validate::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
+use crate::validate::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size, Validated};
 
 /// Computes the extents of all resources; `None` if something is wrong.
-pub(super) fn resources(environment: &mut Environment<'_>, decls: &[ResourceDecl], device: &DeviceFacts) -> Option<Vec<Resource>> {
+pub(super) fn resources(environment: &mut Environment<'_>, validated: &Validated, device: &DeviceFacts) -> Option<Vec<Resource>> {
+    let decls = &validated.resources;
     environment.shapes = vec![None; decls.len()];
     let mut found: Vec<Option<Resource>> = vec![None; decls.len()];
-    for index in extents::order(environment, decls)? {
+    for index in extents::order(environment, validated)? {
         // One whose size names a faulty one has no fault of its own.
-        if extents::named(&decls[index]).all(|other| environment.shapes.get(other).is_some_and(Option::is_some)) {
+        if extents::named(&decls[index], &validated.measured).all(|other| environment.shapes.get(other).is_some_and(Option::is_some)) {
             found[index] = resource(environment, &decls[index], device);
             environment.shapes[index] = found[index].as_ref().map(|resource| resource.shape.clone());
         }

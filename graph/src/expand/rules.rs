@@ -124,7 +124,8 @@ fn check_cycles(environment: &mut Environment<'_>, resources: &[Resource], passe
             }
         }
     }
-    for component in tarjan_scc(&graph) {
+    // One pass alone is no cycle: nothing both is a past and reads it.
+    for component in tarjan_scc(&graph).into_iter().filter(|component| component.len() > 1) {
         let members = || component.iter().filter_map(|node| passes.get(node.index()));
         let remembers = members().find(|pass| matches!(pass.kind, PassKind::Remember));
         let Some(remember) = remembers.filter(|_| members().all(|pass| pass.run == Run::OnChange)) else { continue };

@@ -43,6 +43,7 @@ pub fn validate(loaded: &Loaded, published: &PublishedSchema) -> Result<Validate
         counts: &published.counts,
         collections: &published.collections,
         histories: Vec::new(),
+        measured: Vec::new(),
         loops: Default::default(),
         following: Vec::new(),
         problems: Vec::new(),
@@ -65,13 +66,13 @@ pub fn validate(loaded: &Loaded, published: &PublishedSchema) -> Result<Validate
         outputs = scope.within(instance, outputs_of);
     }
     let retained_budget = document.retained_budget.as_ref().and_then(|budget| scope.expression(budget));
-    let Scope { problems, histories, .. } = scope;
+    let Scope { problems, histories, measured, .. } = scope;
     if has_errors(&problems) {
         return Err(problems);
     }
     let inputs = document.inputs.keys().map(passes::located).collect();
     let blocks = blocks.into_iter().flatten().collect();
-    Ok(Validated { doc: document.doc.clone(), params, resources, blocks, inputs, items, outputs, histories, retained_budget })
+    Ok(Validated { doc: document.doc.clone(), params, resources, blocks, inputs, items, outputs, histories, measured, retained_budget })
 }
 
 /// What holds for a file as a whole.

@@ -39,6 +39,15 @@ impl<'a> Scope<'a> {
         history.map_or(resource, |history| history.value)
     }
 
+    /// The same part of the resource itself, where it is one of its past.
+    pub fn present(&self, mut part: PartExpr) -> PartExpr {
+        part.resource = self.source_of(part.resource);
+        for otherwise in &mut part.otherwise {
+            otherwise.part = self.present(otherwise.part.clone());
+        }
+        part
+    }
+
     /// What is known of a resource or of the past of one.
     pub fn declaration(&self, resource: ResourceId) -> Option<&'a Declared> {
         self.declared.get(self.source_of(resource).index())

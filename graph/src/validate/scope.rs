@@ -1,13 +1,14 @@
 //! The names that are visible at a place, and the expressions that use them.
 //!
 //! A file sees its own names alone. What they stand for is known to all: in a checked expression a parameter has its whole path
-//! (`shadows.texels`), the index of a loop is marked (`@face`), and the extent of a resource has its number (`$3.width`).
+//! (`shadows.texels`), the index of a loop is marked (`@face`), and the extent of what a reference names has the
+//! number of that reference (`$3.width`).
 
 use indexmap::IndexMap;
 
 use super::error::ValidateError;
 use super::instances::{Declared, Instance};
-use super::types::PlacedExpr;
+use super::types::{PartExpr, PlacedExpr};
 use crate::diagnostic::Diagnostic;
 use crate::expand::types::{Located, ResourceId, Value};
 use crate::expression::{self, Expression};
@@ -31,6 +32,8 @@ pub(super) struct Scope<'a> {
     pub collections: &'a IndexMap<String, Collection>,
     /// Resources whose past is read.
     pub histories: Vec<Located<ResourceId>>,
+    /// What expressions ask the extents of.
+    pub measured: Vec<PartExpr>,
     /// The loops around.
     pub loops: Loops,
     /// References that are being followed, by instance and text.
@@ -200,12 +203,13 @@ impl<'a> Scope<'a> {
             && EXTENTS.contains(&extent)
         {
             let part = self.resolve(resource, span)?;
-            if part.mip.is_some() || part.layer.is_some() || !part.otherwise.is_empty() {
-                let reason = format!("`{resource}` stands for a part, or for another resource at times, and extents are those of a whole one");
-                self.report(ValidateError::BadExpression { text: name.to_owned(), reason, span });
-                return None;
-            }
-            return Some(format!("${}.{extent}", self.source_of(part.resource).0));
+            let measured = self.present(part);
+            let known = self.measured.iter().position(|part| *part == measured);
+            let index = known.unwrap_or_else(|| {
+                self.measured.push(measured);
+                self.measured.len() - 1
+            });
+            return Some(format!("${index}.{extent}"));
         }
         let known = self.document().params.keys().map(|param| param.value.clone()).chain(self.loops.variables.iter().cloned());
         let known = known.chain(["output.width".to_owned(), "output.height".to_owned()]).collect();

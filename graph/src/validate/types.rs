@@ -27,6 +27,8 @@ pub struct Validated {
     pub outputs: Vec<(Located<String>, PartExpr)>,
     /// Resources whose past is read, each once. Their histories are numbered behind all of `resources`, in this order.
     pub histories: Vec<Located<ResourceId>>,
+    /// What expressions ask the extents of: `$3.width` is the width of the fourth.
+    pub measured: Vec<PartExpr>,
     /// MiB that content may take which is kept though it could be made again.
     pub retained_budget: Option<PlacedExpr>,
 }
