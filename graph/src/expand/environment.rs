@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
-use super::error::ExpandError;
 use super::ExpandInput;
+use super::error::ExpandError;
 use super::types::{Param, Shape, Value};
 use crate::diagnostic::Diagnostic;
 use crate::expression::kind_of;

@@ -69,7 +69,9 @@ impl From<ExpandError> for Diagnostic {
             }
             ExpandError::BlockAlone { inputs } => {
                 let place = inputs.first().map_or(Span::NOWHERE, |input| input.span);
-                Diagnostic::error(BLOCK_ALONE, message).at(place, "asked for here").hint("name it under `blocks` of a pipeline, with `inputs`")
+                Diagnostic::error(BLOCK_ALONE, message)
+                    .at(place, "asked for here")
+                    .hint("name it under `blocks` of a pipeline, with `inputs`")
             }
             ExpandError::CircularExtent { span, .. } => {
                 Diagnostic::error("expand::circular-extent", message).at(span, "here").hint("compute one of the sizes from parameters")

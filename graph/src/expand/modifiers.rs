@@ -17,7 +17,8 @@ pub(super) fn order(environment: &mut Environment<'_>, resources: &[Resource], p
     if passes.iter().all(|pass| pass.list == first) {
         return;
     }
-    let backwards = |(index, pass): (usize, &Pass)| pass.after.iter().any(|before| before.index() > index && passes[before.index()].list != pass.list);
+    let backwards =
+        |(index, pass): (usize, &Pass)| pass.after.iter().any(|before| before.index() > index && passes[before.index()].list != pass.list);
     if passes.iter().enumerate().any(backwards)
         && let Some(order) = sorted(passes)
     {
@@ -56,7 +57,8 @@ fn sorted(passes: &[Pass]) -> Option<Vec<PassId>> {
             followers[before.index()].push(id);
         }
     }
-    let mut ready: BinaryHeap<Reverse<PassId>> = (0..passes.len()).filter(|index| waits[*index] == 0).map(|index| Reverse(PassId(index as u32))).collect();
+    let mut ready: BinaryHeap<Reverse<PassId>> =
+        (0..passes.len()).filter(|index| waits[*index] == 0).map(|index| Reverse(PassId(index as u32))).collect();
     let mut order = Vec::with_capacity(passes.len());
     while let Some(Reverse(next)) = ready.pop() {
         order.push(next);

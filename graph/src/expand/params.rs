@@ -63,7 +63,9 @@ fn fit(param: &ParamDecl, value: Value) -> Result<Value, String> {
             }
         },
         (Value::Vector(expected), Value::Vector(values)) if expected.len() == values.len() => Value::Vector(values),
-        (default, value) if std::mem::discriminant(default) == std::mem::discriminant(&value) && !matches!(value, Value::Vector(_)) => value,
+        (default, value) if std::mem::discriminant(default) == std::mem::discriminant(&value) && !matches!(value, Value::Vector(_)) => {
+            value
+        }
         (default, value) => return Err(format!("it is {}, and must be {}", kind_of(&value), kind_of(default))),
     };
     in_range(param, value)

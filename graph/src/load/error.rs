@@ -29,12 +29,13 @@ impl From<LoadError> for Diagnostic {
         match error {
             LoadError::Unreadable { path, known, span, .. } => {
                 let hint = did_you_mean(&path, known.iter().map(String::as_str));
-                let hint = hint.or_else(|| (!known.is_empty()).then(|| format!("pipelines that come with the program: {}", known.join(", "))));
+                let hint =
+                    hint.or_else(|| (!known.is_empty()).then(|| format!("there are {}", list_names(known.iter().map(String::as_str)))));
                 Diagnostic::error("load::missing-file", message).at(span, "named here").maybe_hint(hint)
             }
-            LoadError::Recursion { span, .. } => {
-                Diagnostic::error("load::recursion", message).at(span, "here it names itself").hint("leave this one out, or move what both need to a file of its own")
-            }
+            LoadError::Recursion { span, .. } => Diagnostic::error("load::recursion", message)
+                .at(span, "this closes the circle")
+                .hint("leave this one out, or move what both need to a file of its own"),
             LoadError::TooDeep { span, .. } => {
                 Diagnostic::error("load::too-deep", message).at(span, "named here").hint("use it from a file nearer to the pipeline")
             }

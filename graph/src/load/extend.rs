@@ -63,7 +63,14 @@ impl Merge<'_> {
     }
 
     /// One section of both documents.
-    fn entries<T: Clone>(&mut self, what: &'static str, base: Entries<T>, own: Entries<T>, replace: &Entries<T>, remove: &[Text]) -> Entries<T> {
+    fn entries<T: Clone>(
+        &mut self,
+        what: &'static str,
+        base: Entries<T>,
+        own: Entries<T>,
+        replace: &Entries<T>,
+        remove: &[Text],
+    ) -> Entries<T> {
         for name in replace.keys().chain(remove) {
             if !base.contains_key(name) {
                 self.unknown(what, name, base.keys().map(|name| name.value.clone()).collect());

@@ -22,9 +22,9 @@ pub(super) fn usage(scope: &mut Scope<'_>, index: usize) -> Option<BlockDecl> {
     let inner = instance.document();
     scope.within(parent, |scope| {
         let condition = condition(scope, block.when.as_ref(), block.has.as_ref());
-        names(scope, "parameter of the block", &block.params, inner.params.keys());
-        names(scope, "input of the block", &block.inputs, inner.inputs.keys());
-        names(scope, "output of the block", &block.otherwise, inner.outputs.keys());
+        names(scope, "parameter of the block", &block.params, &inner.params);
+        names(scope, "input of the block", &block.inputs, &inner.inputs);
+        names(scope, "output of the block", &block.otherwise, &inner.outputs);
         for (input, doc) in &inner.inputs {
             match block.inputs.get(input) {
                 Some(given) => self::input(scope, name, (input, doc), given),
@@ -48,12 +48,10 @@ pub(super) fn usage(scope: &mut Scope<'_>, index: usize) -> Option<BlockDecl> {
 }
 
 /// Every name that is given must be one that the block has.
-fn names<'a, T>(scope: &mut Scope<'_>, what: &'static str, given: &Entries<T>, known: impl Iterator<Item = &'a Text> + Clone) {
-    for name in given.keys() {
-        if !known.clone().any(|known| known == name) {
-            let known = known.clone().map(|known| known.value.clone()).collect();
-            scope.report(ValidateError::Unknown { what, name: name.value.clone(), known, span: name.span });
-        }
+fn names<T, U>(scope: &mut Scope<'_>, what: &'static str, given: &Entries<T>, known: &Entries<U>) {
+    for name in given.keys().filter(|name| !known.contains_key(*name)) {
+        let known = known.keys().map(|known| known.value.clone()).collect();
+        scope.report(ValidateError::Unknown { what, name: name.value.clone(), known, span: name.span });
     }
 }
 

@@ -23,7 +23,7 @@ pub enum ValidateError {
     BadResource { name: String, reason: String, hint: Option<String>, span: Span },
     #[error("pass `{pass}`: {reason}")]
     BadPass { pass: String, reason: String, hint: Option<String>, span: Span },
-    #[error("`{text}` can't be read: {reason}")]
+    #[error("`{text}` can't stand here: {reason}")]
     BadPrevious { text: String, reason: &'static str, hint: &'static str, span: Span },
     #[error("`{variable}` counts the iterations of a batched loop, and this value is one for all of them")]
     BatchedIndex { variable: String, span: Span },

@@ -44,13 +44,13 @@ pub(super) enum Declared {
 /// All instances, each behind the one that uses it, and what resources there are, by id.
 pub(super) fn instances(loaded: &Loaded) -> (Vec<Instance<'_>>, Vec<Declared>) {
     let (mut instances, mut declared) = (Vec::new(), Vec::new());
-    add(loaded, String::new(), 0, None, &mut instances, &mut declared);
+    add(loaded, "", 0, None, &mut instances, &mut declared);
     (instances, declared)
 }
 
 fn add<'a>(
     loaded: &'a Loaded,
-    path: String,
+    path: &str,
     parent: usize,
     block: Option<(&'a Text, &'a BlockDoc)>,
     instances: &mut Vec<Instance<'a>>,
@@ -75,10 +75,10 @@ fn add<'a>(
     let mut passes = Vec::new();
     paths(&document.passes, "", 0, &mut passes);
     let (children, block_passes) = Default::default();
-    instances.push(Instance { path: path.clone(), parent, block, loaded, children, first_resource, passes, block_passes });
+    instances.push(Instance { path: path.to_owned(), parent, block, loaded, children, first_resource, passes, block_passes });
     for (name, doc) in &document.blocks {
         let Some(inner) = loaded.blocks.get(&name.value) else { continue };
-        let child = add(inner, format!("{path}{}.", name.value), index, Some((name, doc)), instances, declared);
+        let child = add(inner, &format!("{path}{}.", name.value), index, Some((name, doc)), instances, declared);
         let below = [&instances[child].passes, &instances[child].block_passes].into_iter().flatten();
         let below: Vec<String> = below.map(|pass| format!("{}.{pass}", name.value)).collect();
         let instance = &mut instances[index];
@@ -95,4 +95,3 @@ pub(super) fn formats(format: &FormatDoc) -> Vec<String> {
         FormatDoc::FirstOf(formats) => formats.clone(),
     }
 }
-

@@ -60,11 +60,9 @@ pub fn validate(loaded: &Loaded, published: &PublishedSchema) -> Result<Validate
     }
     let items = blocks::items(&mut scope, 0);
     let document = &loaded.document;
-    let mut outputs = Vec::new();
-    for instance in (0..instances.len()).rev() {
-        // Those of blocks are checked, too, whether somebody reads them or not.
-        outputs = scope.within(instance, outputs_of);
-    }
+    // Those of blocks are checked, too, whether somebody reads them or not.
+    let outputs: Vec<_> = (0..instances.len()).map(|index| scope.within(index, outputs_of)).collect();
+    let outputs = outputs.into_iter().next().unwrap_or_default();
     let retained_budget = document.retained_budget.as_ref().and_then(|budget| scope.expression(budget));
     let Scope { problems, histories, measured, .. } = scope;
     if has_errors(&problems) {

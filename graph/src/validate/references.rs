@@ -14,7 +14,7 @@ use crate::syntax::document::{Entries, PassDoc, Text};
 /// Begins a reference to what a resource held at the end of the frame before.
 const PREVIOUS: &str = "previous(";
 /// Why something can't be done with the past.
-const ONLY_READ: (&str, &str) = ("the past can only stand under `read`", "a Copy can keep it: `Copy(read: \"previous(x)\", write: ..)`");
+const ONLY_READ: (&str, &str) = ("it is the past, which can only be read", "a Copy can keep it: `Copy(read: \"previous(x)\", write: ..)`");
 
 impl<'a> Scope<'a> {
     /// A reference such as `radiance.mip(m - 1)`, to be written, shown or measured.
@@ -181,7 +181,8 @@ impl<'a> Scope<'a> {
             return Some(whole(ResourceId(instance.first_resource + index as u32), span));
         }
         let document = instance.document();
-        let known = document.outputs.keys().chain(document.resources.keys()).map(|name| name.value.clone()).collect();
+        let resources = document.resources.keys().filter(|name| !document.outputs.contains_key(*name));
+        let known = document.outputs.keys().chain(resources).map(|name| name.value.clone()).collect();
         self.report(ValidateError::Unknown { what: "output or resource of the block", name: name.to_owned(), known, span });
         None
     }
@@ -190,8 +191,10 @@ impl<'a> Scope<'a> {
     fn slot(&mut self, name: &str, span: Span) -> Option<PartExpr> {
         let found = name.rsplit_once('.').and_then(|(path, slot)| Some((find(&self.document().passes, path)?, slot)));
         let Some(((pass, in_loop), slot)) = found else { return self.unknown_resource(name, span) };
-        let Some(text) = pass.slot(slot) else {
-            self.report(ValidateError::Unknown { what: "slot", name: slot.to_owned(), known: Vec::new(), span });
+        let slots = pass.slots();
+        let Some((_, text)) = slots.iter().find(|(known, _)| *known == slot) else {
+            let known = slots.iter().map(|(name, _)| (*name).to_owned()).collect();
+            self.report(ValidateError::Unknown { what: "slot", name: slot.to_owned(), known, span });
             return None;
         };
         if in_loop {

@@ -106,8 +106,11 @@ impl<'a> Scope<'a> {
         if self.instances.len() > 1 && self.problems.iter().any(known) {
             return;
         }
-        let path = self.instance().path.trim_end_matches('.');
-        if !path.is_empty() {
+        let instance = self.instance();
+        let path = instance.path.trim_end_matches('.');
+        let place = problem.primary.as_ref().map(|label| label.span.file);
+        let at_its_user = place.is_some_and(|file| file != instance.loaded.file && file == self.instances[instance.parent].loaded.file);
+        if !path.is_empty() && !at_its_user {
             problem = problem.note(format!("in the block `{path}`"));
         }
         self.problems.push(problem);

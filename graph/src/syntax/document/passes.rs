@@ -372,15 +372,17 @@ pub enum PassDoc {
 }
 
 impl PassDoc {
-    /// What a slot names: an output first, then an input.
-    pub fn slot(&self, name: &str) -> Option<&Text> {
+    /// What its slots name: outputs first, then inputs.
+    pub fn slots(&self) -> Vec<(&str, &Text)> {
         match self {
             PassDoc::Draw { read, write, modify, .. }
             | PassDoc::Fullscreen { read, write, modify, .. }
-            | PassDoc::Compute { read, write, modify, .. } => [write, modify, read].into_iter().find_map(|slots| slots.get(name)),
-            PassDoc::Copy { read, .. } if name == "read" => Some(read),
-            PassDoc::Copy { write, .. } | PassDoc::Clear { write, .. } if name == "write" => Some(write),
-            _ => None,
+            | PassDoc::Compute { read, write, modify, .. } => {
+                [write, modify, read].into_iter().flatten().map(|(name, part)| (name.value.as_str(), part)).collect()
+            }
+            PassDoc::Copy { read, write, .. } => vec![("write", write), ("read", read)],
+            PassDoc::Clear { write, .. } => vec![("write", write)],
+            PassDoc::Repeat { .. } => Vec::new(),
         }
     }
 }
