@@ -75,9 +75,9 @@ impl Files for DiskFiles {
     }
 }
 
-/// The pipelines in the program.
+/// The pipelines in the program, without the blocks that they are made of.
 pub fn embedded_pipelines() -> Vec<String> {
-    names(&PIPELINES, "ron").into_iter().map(|name| format!("pipelines/{name}")).collect()
+    names(&PIPELINES, "ron").into_iter().filter(|name| !name.starts_with("blocks/")).map(|name| format!("pipelines/{name}")).collect()
 }
 
 /// The scenes in the program.

@@ -62,7 +62,7 @@ fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
         _ => false,
     };
     assert!(harness.change(from_camera) > 0);
-    assert_eq!(harness.frame(), ["gbuffer", "light", "compose", "transparent", "display"]);
+    assert_eq!(harness.frame(), ["gbuffer", "light", "compose", "transparent", "display.expose"]);
 }
 
 #[test]
@@ -72,7 +72,7 @@ fn a_light_that_moves_draws_its_own_six_faces() {
     harness.change(|input| matches!(input, Input::View(view) if matches!(view.kind, ViewKind::LocalLight(1, _))));
     let ran = harness.frame();
     let faces = |light: u32| {
-        ran.iter().filter(|name| (0..6).any(|face| name.starts_with(&format!("local_shadows[{}].", 6 * light + face)))).count()
+        ran.iter().filter(|name| (0..6).any(|face| name.starts_with(&format!("shadows.local[{}].", 6 * light + face)))).count()
     };
     assert_eq!((faces(0), faces(1)), (0, 12), "opaque and masked surfaces of light 1 alone: {ran:?}");
     assert!(!ran.iter().any(|name| name == "gbuffer"), "{ran:?}");
@@ -82,8 +82,8 @@ fn a_light_that_moves_draws_its_own_six_faces() {
 fn exposure_runs_tone_mapping_alone() {
     let mut harness = settled(&PBR);
     Case { sets: &[("exposure", "1.5")], ..PBR }.compile(|input| harness.replan(input)).unwrap();
-    assert_eq!(harness.frame(), ["display"]);
-    assert!(harness.explain(Some("display")).contains("it has not run as it is"));
+    assert_eq!(harness.frame(), ["display.expose"]);
+    assert!(harness.explain(Some("display.expose")).contains("it has not run as it is"));
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn a_resize_leaves_what_does_not_depend_on_the_size() {
     Case { size: [80, 48], ..PBR }.compile(|input| harness.replan(input)).unwrap();
     let ran = harness.frame();
     assert!(ran.iter().any(|name| name == "gbuffer"), "{ran:?}");
-    assert!(!ran.iter().any(|name| name.starts_with("local_shadows")), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("shadows.local")), "{ran:?}");
 }
 
 #[test]
@@ -101,7 +101,7 @@ fn another_output_runs_what_it_alone_needs() {
     Case { outputs: &["color", "normal"], ..PBR }.compile(|input| harness.replan(input)).unwrap();
     let ran = harness.frame();
     assert!(ran.iter().any(|name| name == "inspect"), "{ran:?}");
-    assert!(!ran.iter().any(|name| name.starts_with("local_shadows") || name == "display"), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("shadows.local") || name == "display.expose"), "{ran:?}");
 }
 
 #[test]

@@ -57,6 +57,11 @@ fn dot() {
 }
 
 #[test]
+fn html() {
+    expect("plan.html", &dump::html(&graph().plan(), &graph().sources));
+}
+
+#[test]
 fn json() {
     expect("plan.json", &format!("{:#}\n", dump::json(&graph().plan(), &graph().sources)));
 }

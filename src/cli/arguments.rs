@@ -15,7 +15,7 @@ Examples:
   luminaire render pipelines/pbr.ron --scene scenes/cornell.ron -o cornell.png
   luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set exposure=1
   luminaire check pipelines/*.ron
-  luminaire plan pipelines/pbr.ron --format dot | dot -Tsvg -o plan.svg
+  luminaire plan pipelines/pbr.ron --format html > plan.html
   luminaire explain pipelines/pbr.ron --change camera
 
 Pipelines, shaders and scenes that come with the program can be named by the same paths from anywhere; a file on disk wins.
@@ -146,6 +146,8 @@ pub(crate) enum PlanFormat {
     Json,
     /// Graphviz
     Dot,
+    /// A page for a browser, with a chart of passes, resources and memory
+    Html,
 }
 
 fn parse_size(text: &str) -> Result<[u32; 2], String> {

@@ -8,6 +8,7 @@ use luminaire_graph::diagnostic::{Diagnostic, has_errors};
 use luminaire_graph::expand::BLOCK_ALONE;
 use luminaire_graph::published::SceneCounts;
 use luminaire_graph::reflect::reflect;
+use luminaire_graph::schedule::NOTHING_RUNS;
 use luminaire_graph::source::{SourceMap, Span};
 
 use super::arguments::CheckArguments;
@@ -73,7 +74,9 @@ fn pipeline(path: &Path) -> (Vec<Diagnostic>, SourceMap) {
             outputs: None,
         });
         // A block is given its inputs by others: alone, its names can be checked, and they have been.
-        compilation.diagnostics.retain(|problem| problem.code != BLOCK_ALONE);
+        // And where a scene has nothing of what it draws, nothing runs.
+        let fine = |code: &str| code == BLOCK_ALONE || code == NOTHING_RUNS && counts.is_empty();
+        compilation.diagnostics.retain(|problem| !fine(problem.code));
         let problems = has_errors(&compilation.diagnostics);
         if problems || last.0.is_empty() {
             last = (compilation.diagnostics, compilation.sources);

@@ -30,6 +30,7 @@ pub(super) fn run(arguments: &PlanArguments) -> bool {
                 PlanFormat::Text => dump::text(&plan, sources),
                 PlanFormat::Json => format!("{:#}\n", dump::json(&plan, sources)),
                 PlanFormat::Dot => dump::dot(&plan),
+                PlanFormat::Html => dump::html(&plan, sources),
             };
             print(&text) && fine
         }

@@ -67,10 +67,10 @@ fn same_images(a: &[LinearImage], b: &[LinearImage], when: &str) -> Result<(), F
 fn incremental_is_full() -> Result<(), Failed> {
     // One after the other: what is replaced in the scene, and a pass that must not run for it.
     let changes = [
-        ("the camera moves", "(0.0, 2.0, 5.0)", "(0.3, 2.2, 4.8)", "local_shadows[0].opaque"),
+        ("the camera moves", "(0.0, 2.0, 5.0)", "(0.3, 2.2, 4.8)", "shadows.local[0].opaque"),
         ("the lamp moves", "position: (1, 1.5, 1)", "position: (0.7, 1.6, 1.2)", "gbuffer"),
-        ("the lamp is brighter", "candela: 3", "candela: 5", "local_shadows[0].opaque"),
-        ("the sun is dimmer", "lux: 2", "lux: 1", "sun_opaque"),
+        ("the lamp is brighter", "candela: 3", "candela: 5", "shadows.local[0].opaque"),
+        ("the sun is dimmer", "lux: 2", "lux: 1", "shadows.sun_opaque"),
         ("a ball moves", "translation: (-0.8, 0.6, 0)", "translation: (-0.7, 0.7, 0.1)", "nothing"),
         ("a surface gets rougher", "roughness: 0.3", "roughness: 0.5", "nothing"),
         ("the sky turns", "sky_radiance: (0.1, 0.2, 0.4)", "sky_radiance: (0.3, 0.2, 0.1)", "gbuffer"),

@@ -18,6 +18,7 @@ mod problems;
 pub(crate) mod sweep;
 mod versions;
 
+pub use problems::NOTHING_RUNS;
 pub(crate) use versions::writes;
 
 use crate::allocate::model::Model;

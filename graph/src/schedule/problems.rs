@@ -183,13 +183,16 @@ fn outputs(bound: &Bound, grid: &Grid, region: &Region, resource: &Resource, fou
     }
 }
 
+/// The code of the message that comes where outputs are nothing but declared values, which depends on the scene.
+pub const NOTHING_RUNS: &str = "schedule::nothing-runs";
+
 /// Outputs that are nothing but declared values, where no pass runs that could fill them.
 pub(crate) fn nothing_runs(bound: &Bound) -> Vec<Diagnostic> {
     let outputs = bound.expanded.outputs.iter();
     let report = |output: &Output| {
         let resource = &bound.expanded.resources[output.part.resource.index()];
         Diagnostic::error(
-            "schedule::nothing-runs",
+            NOTHING_RUNS,
             format!("output `{}` is the declared value of `{}`, and no pass runs to fill it", output.name, resource.name),
         )
         .at(output.part.span, "nothing produces it")
