@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::dirty::{Adoption, Remembered, StepRun};
 use luminaire_graph::execute::Backend;
-use luminaire_graph::expand::types::ClearValue;
+use luminaire_graph::expand::types::{ClearValue, ResourceId};
 use luminaire_graph::plan::{MemoryId, PartView, Plan, Step, StepKind};
 
 use crate::clear::ClearStep;
@@ -17,6 +17,7 @@ use crate::copy::CopyStep;
 use crate::draw::DrawStep;
 use crate::errors::{Subject, catch};
 use crate::fullscreen::FullscreenStep;
+use crate::poison;
 use crate::remember::{Carried, RememberStep};
 use crate::scene_data::SceneData;
 use crate::store::Store;
@@ -130,7 +131,12 @@ impl Backend for WgpuBackend {
 
     fn create_memory(&mut self, plan: &Plan, memory: MemoryId) -> Result<(), Diagnostic> {
         let Store { gpu, memories, .. } = &mut self.store;
-        memories.create(gpu, plan, memory)
+        memories.create(gpu, plan, memory)?;
+        if gpu.poison {
+            let holders = &plan.memories[memory.index()].holders;
+            holders.iter().try_for_each(|holder| self.poison(plan, *holder))?;
+        }
+        Ok(())
     }
 
     fn prepare_step(&mut self, plan: &Plan, index: usize) -> Result<(), Diagnostic> {
@@ -220,6 +226,15 @@ impl Backend for WgpuBackend {
         self.counts.submissions += 1;
         self.carried.clear();
         Ok(())
+    }
+
+    fn poison(&mut self, plan: &Plan, resource: ResourceId) -> Result<(), Diagnostic> {
+        self.encoder();
+        let device = self.store.gpu.device.clone();
+        let WgpuBackend { store, encoder: Some(encoder), .. } = self else { return Ok(()) };
+        let (poisoned, errors) = catch(&device, || poison::encode(store, encoder, plan, resource));
+        Subject::nowhere(format!("the poison of `{}`", plan.resources[resource.index()].name)).check(&errors)?;
+        poisoned
     }
 
     fn abandon(&mut self) {

@@ -53,6 +53,11 @@ pub(crate) struct Fills {
 }
 
 impl Fills {
+    /// A buffer of equal texels, without gaps if a row is a multiple of what copies need.
+    pub(crate) fn buffer(&mut self, gpu: &Gpu, texel: &[u8], width: u32, height: u32) -> wgpu::Buffer {
+        self.get(gpu, texel, width, height).buffer
+    }
+
     fn get(&mut self, gpu: &Gpu, texel: &[u8], width: u32, height: u32) -> Fill {
         self.made.entry((texel.to_vec(), width, height)).or_insert_with(|| fill(gpu, texel, width, height)).clone()
     }

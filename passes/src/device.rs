@@ -29,6 +29,8 @@ pub struct GpuOptions {
     pub noop: Option<DeviceFacts>,
     /// Bytes that a plan may allocate; [`DEFAULT_MEMORY_BUDGET`] unless said.
     pub memory_budget: Option<u64>,
+    /// For tests, see [`Adapter::poisoned`].
+    pub poison: bool,
 }
 
 /// A GPU, or a program that behaves like one, not opened yet.
@@ -37,12 +39,13 @@ pub struct Adapter {
     adapter: wgpu::Adapter,
     name: String,
     memory_budget: u64,
+    poison: bool,
 }
 
 impl Adapter {
     fn new(adapter: wgpu::Adapter, memory_budget: u64) -> Adapter {
         let name = adapter.get_info().name;
-        Adapter { adapter, name, memory_budget }
+        Adapter { adapter, name, memory_budget, poison: false }
     }
 
     /// The best Vulkan adapter: discrete before integrated before virtual before software, then as the driver lists them.
@@ -71,9 +74,16 @@ impl Adapter {
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         match block_on(instance.enumerate_adapters(wgpu::Backends::NOOP)).into_iter().next() {
-            Some(adapter) => Ok(Adapter { adapter, name: facts.name.clone(), memory_budget: facts.memory_budget }),
+            Some(adapter) => Ok(Adapter { adapter, name: facts.name.clone(), memory_budget: facts.memory_budget, poison: false }),
             None => Err(vec![Diagnostic::error("device::no-adapter", "the noop adapter is not there")]),
         }
+    }
+
+    /// The same adapter for tests: on its devices every memory is poisoned when it is made, and again whenever a resource takes
+    /// bytes over from another one, so that whatever relies on leftovers shows (NaN, magenta, all ones). Slow, and of no use
+    /// otherwise: the results are the same.
+    pub fn poisoned(self) -> Adapter {
+        Adapter { poison: true, ..self }
     }
 
     /// The adapter's name, for messages.
@@ -125,7 +135,7 @@ impl Adapter {
         let errors = ErrorSink::default();
         errors.install(&device);
         let facts = facts(name, &device.limits(), device.features(), self.memory_budget);
-        Ok(Gpu { device, queue, errors, facts })
+        Ok(Gpu { device, queue, errors, facts, poison: self.poison })
     }
 }
 
@@ -143,6 +153,8 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
     pub(crate) errors: ErrorSink,
     facts: DeviceFacts,
+    /// Memories are poisoned, see [`Adapter::poisoned`].
+    pub(crate) poison: bool,
 }
 
 impl Gpu {
@@ -152,6 +164,7 @@ impl Gpu {
             Some(facts) => Adapter::noop(facts)?,
             None => Adapter::choose(options.memory_budget)?,
         };
+        let adapter = if options.poison { adapter.poisoned() } else { adapter };
         adapter.open(&options.requirements, options.timing)
     }
 

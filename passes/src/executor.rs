@@ -141,7 +141,12 @@ impl Executor {
     pub fn render_frame(&mut self) -> Result<FrameStats, Vec<Diagnostic>> {
         self.backend.begin_frame();
         let frame = self.tracker.frame(&self.now);
-        match execute::execute(&self.plan, &frame, &mut self.backend) {
+        let ran = if self.backend.store.gpu.poison {
+            execute::execute_poisoned(&self.tracker, &frame, &mut self.backend)
+        } else {
+            execute::execute(&self.plan, &frame, &mut self.backend)
+        };
+        match ran {
             Ok(()) => self.tracker.commit(&frame, &self.now),
             Err(problem) => {
                 if self.backend.store.gpu.check_alive().is_err() {

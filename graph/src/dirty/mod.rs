@@ -24,6 +24,7 @@ mod tracker;
 pub use adopt::{Adoption, Carry};
 pub use retention::{Retention, retention};
 pub use tracker::Tracker;
+pub(crate) use tracker::overlap;
 
 use crate::expand::types::{ClearValue, ResourceId};
 use crate::plan::{InputId, PartView};

@@ -123,6 +123,11 @@ impl Tracker {
         &self.plan.inputs
     }
 
+    /// By memory: the resources whose bytes were left there by the last submitted frame.
+    pub fn residents(&self) -> &[Vec<ResourceId>] {
+        &self.held.residents
+    }
+
     /// Decides what runs, given the revision of each input. Changes nothing.
     pub fn frame(&self, revisions: &[u64]) -> Frame {
         Closure::new(self).frame(revisions)
@@ -391,7 +396,7 @@ impl Tracker {
 }
 
 /// Whether two resources of one memory have a byte in common.
-pub(super) fn overlap(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
+pub(crate) fn overlap(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
     let bytes = |id: ResourceId| {
         let resource = &plan.resources[id.index()];
         let start = resource.placement.map_or(0, |placement| placement.offset);
