@@ -8,7 +8,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
-use luminaire_passes::{Adapter, Executor, FrameStats};
+use luminaire_passes::{Adapter, Executor, FrameStats, Gpu};
 use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
 use luminaire_scenes::scene_file;
 use luminaire_scenes::world::World;
@@ -170,6 +170,11 @@ impl Session {
                 Err((diagnostics, sources))
             }
         }
+    }
+
+    /// The device, for those who draw beside the executor (a viewer).
+    pub fn gpu(&self) -> &Gpu {
+        self.executor.gpu()
     }
 
     /// Renders a frame.

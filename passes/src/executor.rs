@@ -104,6 +104,11 @@ impl Executor {
         Ok(())
     }
 
+    /// The device that it runs on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.backend.store.gpu
+    }
+
     /// The plan that it runs.
     pub fn plan(&self) -> &Plan {
         &self.plan

@@ -5,7 +5,6 @@ use std::sync::Arc;
 
 use super::closure::Closure;
 use super::flow::{Flow, FlowInput};
-use super::maker::Names;
 use super::{Frame, Idle, Remembered};
 use crate::expand::types::{ClearValue, OnResize, ResourceId, Run};
 use crate::plan::{Input, PartView, Plan, PlannedShape, Step, StepKind};
@@ -40,7 +39,6 @@ pub(super) struct Turn {
 pub struct Tracker {
     pub(super) plan: Arc<Plan>,
     pub(super) flow: Flow,
-    pub(super) names: Names,
     pub(super) held: Held,
     /// Nodes that have not run as they are.
     pub(super) fresh: BTreeSet<u32>,
@@ -94,7 +92,6 @@ impl Tracker {
                 unheld_amortised: BTreeSet::new(),
                 unseen: (0u32..).zip(&flow.pieces).filter(|(_, piece)| flow.is_amortised(piece.unit)).map(|(at, _)| at).collect(),
             },
-            names: Names::default(),
             always,
             gathered,
             turns,
