@@ -108,13 +108,15 @@ pub struct RenderRequest<'a> {
 pub struct Session {
     /// What runs.
     pub plan: Arc<Plan>,
-    /// The adapter's name.
-    pub adapter: String,
+    /// What it runs on.
+    pub adapter: Adapter,
     /// Warnings of the compilation and the publishing.
     pub warnings: Problems,
     executor: Executor,
     camera: Option<String>,
     facts: DeviceFacts,
+    timing: bool,
+    recoveries: u64,
 }
 
 impl Session {
@@ -158,7 +160,9 @@ impl Session {
         match made {
             Ok(executor) => Ok(Session {
                 plan,
-                adapter: adapter.name().to_owned(),
+                adapter: adapter.clone(),
+                timing: request.timing,
+                recoveries: 0,
                 warnings: (diagnostics, sources),
                 executor,
                 camera: request.camera.map(str::to_owned),
@@ -177,13 +181,36 @@ impl Session {
         self.executor.gpu()
     }
 
-    /// Renders a frame.
+    /// Renders a frame. Where the device turns out to be lost another one is opened, and the frame renders everything there; an
+    /// error means that this failed, too, and the next frame tries again.
     pub fn render_frame(&mut self) -> Result<FrameStats, Problems> {
-        self.executor.render_frame().map_err(|problems| (problems, self.warnings.1.clone()))
+        let mut rendered = self.executor.render_frame();
+        if rendered.is_err() && self.recover()? {
+            rendered = self.executor.render_frame();
+        }
+        rendered.map_err(|problems| (problems, self.warnings.1.clone()))
+    }
+
+    /// How many lost devices were replaced.
+    pub fn recoveries(&self) -> u64 {
+        self.recoveries
+    }
+
+    /// Replaces the device if it is lost. Whether it was.
+    fn recover(&mut self) -> Result<bool, Problems> {
+        if !self.executor.is_lost() {
+            return Ok(false);
+        }
+        let opened = self.adapter.open(&self.plan.requirements, self.timing);
+        let recovered = opened.and_then(|gpu| self.executor.recover(&gpu));
+        recovered.map_err(|problems| (problems, self.warnings.1.clone()))?;
+        self.recoveries += 1;
+        Ok(true)
     }
 
     /// Takes the world's present state over. What did not change will not run again.
     pub fn update(&mut self, world: &mut World) -> Result<(), Problems> {
+        self.recover()?;
         let plan = Arc::clone(&self.plan);
         let request = PublishRequest {
             camera: self.camera.as_deref(),
@@ -214,6 +241,7 @@ impl Session {
     /// Compiles again, for a changed file, parameter, size or output, and turns to the new plan. What is the same stays held, and
     /// pipelines that did not change are not built again. After an error the last good plan goes on.
     pub fn reload(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<(), Problems> {
+        self.recover()?;
         let (published, counts) = (schema(), counts(world));
         let compilation = compile_pipeline(&CompileInput {
             pipeline: request.pipeline,

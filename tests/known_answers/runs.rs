@@ -13,6 +13,7 @@ pub const CASES: &[Case] = &[
     ("runs::the past goes through a resize", resizes),
     ("runs::a buffer says how much is done", indirect),
     ("runs::a light that moves runs its own iteration", elements),
+    ("runs::what accumulates starts again on another device", accumulates_anew),
 ];
 
 fn shot(name: &str, size: [u32; 2], outputs: &[&str]) -> Shot {
@@ -174,6 +175,23 @@ fn elements() -> Result<(), Failed> {
         }
         let expected = [candela[0] + 100 * candela[1] + 10_000 * candela[2], at.iter().sum(), 3].map(f64::from);
         expect(&session, "shown", &format!("{candela:?} at {at:?}"), expected)?;
+    }
+    Ok(())
+}
+
+/// Lost after two runs of three: all is as if the program had just begun.
+fn accumulates_anew() -> Result<(), Failed> {
+    let mut session = shot("gather", [8, 8], &["sum", "tally"]).poisoned_session(&mut world(&sky(2))?)?;
+    for _ in 0..2 {
+        session.render_frame().map_err(shown)?;
+    }
+    expect(&session, "sum", "before", [6.0, 102.0, 1.0])?;
+    session.gpu().device().destroy();
+    for (sum, tally) in [([2.0, 101.0, 0.0], [0.5, 1.0, 0.0]), ([6.0, 102.0, 1.0], [2.5, 2.0, 0.0]), ([12.0, 103.0, 2.0], [6.5, 3.0, 0.0])]
+    {
+        session.render_frame().map_err(shown)?;
+        expect(&session, "sum", "after", sum)?;
+        expect(&session, "tally", "after", tally)?;
     }
     Ok(())
 }

@@ -13,6 +13,7 @@ pub const CASES: &[Case] = &[
     ("steady::incremental is full", incremental_is_full),
     ("steady::incremental is full for base colours", incremental_is_full_for_albedo),
     ("steady::poison is seen", poison_is_seen),
+    ("steady::a lost device is replaced", lost_devices_are_replaced),
     ("steady::any other outputs leave the picture as it is", outputs_do_not_interfere),
     ("steady::the sky is seen and lights nothing", sky_lights_nothing),
 ];
@@ -138,6 +139,38 @@ fn replay(
         let mut fresh = next.session(&mut world)?;
         fresh.render_frame().map_err(shown)?;
         same_images(&images(&session, outputs)?, &images(&fresh, outputs)?, &format!("after a change of {what}"))?;
+    }
+    Ok(())
+}
+
+/// Whatever is asked for first after the loss: a frame though nothing changed, a change of the scene, or another size.
+fn lost_devices_are_replaced() -> Result<(), Failed> {
+    let (mut scene, mut shot) = (busy(), Shot::pbr(48, &OUTPUTS));
+    let mut session = shot.session(&mut world(&scene)?)?;
+    let first = session.render_frame().map_err(shown)?;
+    for (recoveries, what) in (1..).zip(["nothing", "the lamp moves", "size"]) {
+        session.gpu().device().destroy();
+        match what {
+            "the lamp moves" => {
+                scene = scene.replace("position: (1, 1.5, 1)", "position: (0.7, 1.6, 1.2)");
+                session.update(&mut world(&scene)?).map_err(shown)?;
+            }
+            "size" => {
+                shot.size = [40, 56];
+                session.reload(&mut world(&scene)?, &shot.request()).map_err(shown)?;
+            }
+            _ => {}
+        }
+        let stats = session.render_frame().map_err(shown)?;
+        if (session.recoveries(), stats.counts.steps) != (recoveries, first.counts.steps) {
+            return Err(format!("{what}: {} recoveries, {stats:?}", session.recoveries()).into());
+        }
+        let mut fresh = shot.session(&mut world(&scene)?)?;
+        fresh.render_frame().map_err(shown)?;
+        same_images(&images(&session, &OUTPUTS)?, &images(&fresh, &OUTPUTS)?, &format!("after a loss and {what}"))?;
+        if !session.render_frame().map_err(shown)?.settled {
+            return Err(format!("{what}: it does not settle").into());
+        }
     }
     Ok(())
 }

@@ -181,7 +181,7 @@ mod tests {
         }
     }
 
-    fn frame(plan: &Plan) -> Frame {
+    fn frame(plan: &Plan) -> Arc<Frame> {
         Tracker::new(Arc::new(plan.clone())).frame(&[])
     }
 
