@@ -184,11 +184,7 @@ impl Session {
     /// Renders a frame. Where the device turns out to be lost another one is opened, and the frame renders everything there; an
     /// error means that this failed, too, and the next frame tries again.
     pub fn render_frame(&mut self) -> Result<FrameStats, Problems> {
-        let mut rendered = self.executor.render_frame();
-        if rendered.is_err() && self.recover()? {
-            rendered = self.executor.render_frame();
-        }
-        rendered.map_err(|problems| (problems, self.warnings.1.clone()))
+        self.on_living_device(Executor::render_frame).map_err(|problems| (problems, self.warnings.1.clone()))
     }
 
     /// How many lost devices were replaced.
@@ -196,21 +192,20 @@ impl Session {
         self.recoveries
     }
 
-    /// Replaces the device if it is lost. Whether it was.
-    fn recover(&mut self) -> Result<bool, Problems> {
-        if !self.executor.is_lost() {
-            return Ok(false);
+    /// Does something; where it fails because the device is lost, once more on another one.
+    fn on_living_device<T>(&mut self, mut work: impl FnMut(&mut Executor) -> Result<T, Vec<Diagnostic>>) -> Result<T, Vec<Diagnostic>> {
+        let done = work(&mut self.executor);
+        if done.is_ok() || !self.executor.is_lost() {
+            return done;
         }
-        let opened = self.adapter.open(&self.plan.requirements, self.timing);
-        let recovered = opened.and_then(|gpu| self.executor.recover(&gpu));
-        recovered.map_err(|problems| (problems, self.warnings.1.clone()))?;
+        let gpu = self.adapter.open(&self.plan.requirements, self.timing)?;
+        self.executor.recover(&gpu)?;
         self.recoveries += 1;
-        Ok(true)
+        work(&mut self.executor)
     }
 
     /// Takes the world's present state over. What did not change will not run again.
     pub fn update(&mut self, world: &mut World) -> Result<(), Problems> {
-        self.recover()?;
         let plan = Arc::clone(&self.plan);
         let request = PublishRequest {
             camera: self.camera.as_deref(),
@@ -219,8 +214,11 @@ impl Session {
             draw_lists: &plan.draw_lists,
             max_texture_2d: self.facts.max_texture_2d,
         };
-        let published = publish(world, &request).and_then(|published| self.executor.update_scene(Arc::new(published.scene)));
-        published.map_err(|problems| (problems, self.warnings.1.clone()))
+        let updated = publish(world, &request).and_then(|published| {
+            let scene = Arc::new(published.scene);
+            self.on_living_device(|executor| executor.update_scene(Arc::clone(&scene)))
+        });
+        updated.map_err(|problems| (problems, self.warnings.1.clone()))
     }
 
     /// Whether some pass runs in every frame, so that the image never settles.
@@ -241,7 +239,6 @@ impl Session {
     /// Compiles again, for a changed file, parameter, size or output, and turns to the new plan. What is the same stays held, and
     /// pipelines that did not change are not built again. After an error the last good plan goes on.
     pub fn reload(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<(), Problems> {
-        self.recover()?;
         let (published, counts) = (schema(), counts(world));
         let compilation = compile_pipeline(&CompileInput {
             pipeline: request.pipeline,
@@ -263,8 +260,10 @@ impl Session {
             draw_lists: &plan.draw_lists,
             max_texture_2d: self.facts.max_texture_2d,
         };
-        let adopted =
-            publish(world, &publish_request).and_then(|published| self.executor.adopt(Arc::clone(&plan), Arc::new(published.scene)));
+        let adopted = publish(world, &publish_request).and_then(|published| {
+            let scene = Arc::new(published.scene);
+            self.on_living_device(|executor| executor.adopt(Arc::clone(&plan), Arc::clone(&scene)))
+        });
         adopted.map_err(|problems| (problems, sources.clone()))?;
         self.camera = request.camera.map(str::to_owned);
         (self.plan, self.warnings) = (plan, (diagnostics, sources));

@@ -196,6 +196,12 @@ impl ByHand {
 
     fn frame(&mut self) {
         let mut encoder = self.gpu.device().create_command_encoder(&wgpu::CommandEncoderDescriptor { label: Some("frame") });
+        // What the first pass reads is the declared value, and others have had its bytes since.
+        drop(encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
+            label: Some("clear"),
+            color_attachments: &[Some(cleared(&self.views[0]))],
+            ..wgpu::RenderPassDescriptor::default()
+        }));
         for (index, name) in self.names.iter().enumerate() {
             if index % 2 == 0 {
                 let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor { label: Some(name), timestamp_writes: None });
@@ -206,12 +212,7 @@ impl ByHand {
             }
             let mut pass = encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
                 label: Some(name),
-                color_attachments: &[Some(wgpu::RenderPassColorAttachment {
-                    view: &self.views[(index + 1) % self.views.len()],
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
-                })],
+                color_attachments: &[Some(cleared(&self.views[(index + 1) % self.views.len()]))],
                 ..wgpu::RenderPassDescriptor::default()
             });
             pass.set_pipeline(&self.fullscreen.0);
@@ -219,6 +220,15 @@ impl ByHand {
             pass.draw(0..3, 0..1);
         }
         self.gpu.queue().submit([encoder.finish()]);
+    }
+}
+
+fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
+    wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: wgpu::LoadOp::Clear(wgpu::Color::TRANSPARENT), store: wgpu::StoreOp::Store },
     }
 }
 

@@ -69,9 +69,10 @@ impl Executor {
         Ok(Executor { plan, backend, scene, tracker, revisions, now, last: Arc::default() })
     }
 
-    /// Whether the device is lost. Nothing but [`Executor::recover`] helps then.
+    /// Whether the device is lost. Nothing but [`Executor::recover`] helps then. Waits for the device, since wgpu tells nobody before
+    /// all work has ended.
     pub fn is_lost(&self) -> bool {
-        self.gpu().check_alive().is_err()
+        self.gpu().wait().is_err()
     }
 
     /// Goes on with another device after the one that it had was lost. All content is gone: the next frame runs everything, what
@@ -149,7 +150,8 @@ impl Executor {
     }
 
     /// Runs what the changes since the last frame reach. Where nothing changed nothing is submitted. A frame that fails is decided
-    /// again by the next call. A lost device is noticed even where nothing runs.
+    /// again by the next call. A lost device is noticed even where nothing runs,
+    /// when its last work has ended.
     pub fn render_frame(&mut self) -> Result<FrameStats, Vec<Diagnostic>> {
         self.backend.begin_frame();
         let frame = self.tracker.frame(&self.now);
