@@ -7,6 +7,33 @@ use luminaire::graph::diagnostic::render;
 use luminaire::passes::{Adapter, facts};
 use luminaire::session::{RenderRequest, Session, load_scene};
 
+/// Also where nothing would run.
+#[test]
+fn a_lost_device_is_replaced() {
+    let adapter = Adapter::noop(&DeviceFacts::webgpu_defaults()).expect("the noop adapter needs no driver");
+    let mut loaded = load_scene("scenes/cornell.ron", None).expect("shipped scenes load");
+    let request = RenderRequest {
+        pipeline: "pipelines/pbr.ron",
+        size: [64, 48],
+        camera: None,
+        sets: &[],
+        outputs: None,
+        timing: false,
+        memory_budget: None,
+    };
+    let mut session = Session::on(&adapter, &mut loaded.world, &request).expect("a session");
+    let first = session.render_frame().expect("a frame");
+    assert!(session.render_frame().expect("a frame").settled);
+    for losses in 1..4 {
+        session.gpu().device().destroy();
+        let stats = session.render_frame().expect("a frame on another device");
+        assert_eq!((session.recoveries(), stats.counts), (losses, first.counts));
+        assert!(session.render_frame().expect("a frame").settled);
+        let devices = adapter.objects().into_iter().find(|(kind, _)| *kind == "devices");
+        assert_eq!(devices, Some(("devices", 1)), "the lost device is forgotten");
+    }
+}
+
 #[test]
 fn shipped_pipelines_are_valid() {
     let mut failures = Vec::new();

@@ -76,7 +76,7 @@ impl Executor {
     }
 
     /// Goes on with another device after the one that it had was lost. All content is gone: the next frame runs everything, what
-    /// accumulates starts again, and the past is its first value. Errors as of [`Executor::new`]; it may be tried again then.
+    /// accumulates starts again, the past is its first value, and counts of what was created begin anew. Errors as of [`Executor::new`]; it may be tried again then.
     pub fn recover(&mut self, gpu: &Gpu) -> Result<(), Vec<Diagnostic>> {
         self.backend = start(gpu, &self.plan, &self.backend.store.schema, &self.scene)?;
         self.tracker.lose();
