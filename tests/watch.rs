@@ -40,7 +40,7 @@ fn changes_are_told_once_however_they_are_written() {
         write(&pipeline, text);
         assert_eq!(watch.changed(), Vec::<PathBuf>::new(), "changes still come in");
     }
-    assert_eq!(told(&mut watch, SOON), [pipeline.clone()]);
+    assert_eq!(told(&mut watch, SOON), [&*pipeline]);
     assert_eq!(told(&mut watch, 3 * QUIET), Vec::<PathBuf>::new());
     // As editors do it, and both at once.
     let new = folder.path().join("b.wgsl.new");
