@@ -14,6 +14,7 @@ pub const CASES: &[Case] = &[
     ("runs::a buffer says how much is done", indirect),
     ("runs::a light that moves runs its own iteration", elements),
     ("runs::what accumulates starts again on another device", accumulates_anew),
+    ("runs::what is not kept is made again", not_kept),
 ];
 
 fn shot(name: &str, size: [u32; 2], outputs: &[&str]) -> Shot {
@@ -192,6 +193,25 @@ fn accumulates_anew() -> Result<(), Failed> {
         session.render_frame().map_err(shown)?;
         expect(&session, "sum", "after", sum)?;
         expect(&session, "tally", "after", tally)?;
+    }
+    Ok(())
+}
+
+/// Twice the sum of the sky and 100 times the camera's place. A camera that moves finds the sky's texture in other hands.
+fn not_kept() -> Result<(), Failed> {
+    let scene = |z: u32| sky(3).replace("position: (0, 0, 1)", &format!("position: (0, 0, {z})"));
+    let mut session = shot("shared", [8, 8], &["shown"]).poisoned_session(&mut world(&scene(1))?)?;
+    let memory = |name: &str| session.plan.resources.iter().find(|resource| resource.name == name).and_then(|found| found.placement);
+    if memory("first").is_none() || memory("first") != memory("third") {
+        return Err("`first` and `third` share nothing".into());
+    }
+    for z in [1, 2, 5, 5] {
+        session.update(&mut world(&scene(z))?).map_err(shown)?;
+        let settled = session.render_frame().map_err(shown)?.settled;
+        expect(&session, "shown", &format!("from {z}"), [f64::from(2 * (3 + 100 * z)); 3])?;
+        if !settled && session.ran() != ["sky", "camera", "twice", "show"] {
+            return Err(format!("from {z}: ran {:?}", session.ran()).into());
+        }
     }
     Ok(())
 }
