@@ -8,6 +8,7 @@ pub mod files;
 pub mod image_file;
 pub mod ron_kind;
 pub mod session;
+pub mod watch;
 
 pub use luminaire_graph as graph;
 pub use luminaire_passes as passes;

@@ -8,7 +8,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
-use luminaire_passes::{Adapter, Executor, FrameStats};
+use luminaire_passes::{Adapter, Executor, FrameStats, Gpu};
 use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
 use luminaire_scenes::scene_file;
 use luminaire_scenes::world::World;
@@ -108,13 +108,15 @@ pub struct RenderRequest<'a> {
 pub struct Session {
     /// What runs.
     pub plan: Arc<Plan>,
-    /// The adapter's name.
-    pub adapter: String,
+    /// What it runs on.
+    pub adapter: Adapter,
     /// Warnings of the compilation and the publishing.
     pub warnings: Problems,
     executor: Executor,
     camera: Option<String>,
     facts: DeviceFacts,
+    timing: bool,
+    recoveries: u64,
 }
 
 impl Session {
@@ -158,7 +160,9 @@ impl Session {
         match made {
             Ok(executor) => Ok(Session {
                 plan,
-                adapter: adapter.name().to_owned(),
+                adapter: adapter.clone(),
+                timing: request.timing,
+                recoveries: 0,
                 warnings: (diagnostics, sources),
                 executor,
                 camera: request.camera.map(str::to_owned),
@@ -172,9 +176,32 @@ impl Session {
         }
     }
 
-    /// Renders a frame.
+    /// The device, for those who draw beside the executor (a viewer).
+    pub fn gpu(&self) -> &Gpu {
+        self.executor.gpu()
+    }
+
+    /// Renders a frame. Where the device turns out to be lost another one is opened, and the frame renders everything there; an
+    /// error means that this failed, too, and the next frame tries again.
     pub fn render_frame(&mut self) -> Result<FrameStats, Problems> {
-        self.executor.render_frame().map_err(|problems| (problems, self.warnings.1.clone()))
+        self.on_living_device(Executor::render_frame).map_err(|problems| (problems, self.warnings.1.clone()))
+    }
+
+    /// How many lost devices were replaced.
+    pub fn recoveries(&self) -> u64 {
+        self.recoveries
+    }
+
+    /// Does something; where it fails because the device is lost, once more on another one.
+    fn on_living_device<T>(&mut self, mut work: impl FnMut(&mut Executor) -> Result<T, Vec<Diagnostic>>) -> Result<T, Vec<Diagnostic>> {
+        let done = work(&mut self.executor);
+        if done.is_ok() || !self.executor.is_lost() {
+            return done;
+        }
+        let gpu = self.adapter.open(&self.plan.requirements, self.timing)?;
+        self.executor.recover(&gpu)?;
+        self.recoveries += 1;
+        work(&mut self.executor)
     }
 
     /// Takes the world's present state over. What did not change will not run again.
@@ -187,8 +214,11 @@ impl Session {
             draw_lists: &plan.draw_lists,
             max_texture_2d: self.facts.max_texture_2d,
         };
-        let published = publish(world, &request).and_then(|published| self.executor.update_scene(Arc::new(published.scene)));
-        published.map_err(|problems| (problems, self.warnings.1.clone()))
+        let updated = publish(world, &request).and_then(|published| {
+            let scene = Arc::new(published.scene);
+            self.on_living_device(|executor| executor.update_scene(Arc::clone(&scene)))
+        });
+        updated.map_err(|problems| (problems, self.warnings.1.clone()))
     }
 
     /// Whether some pass runs in every frame, so that the image never settles.
@@ -230,8 +260,10 @@ impl Session {
             draw_lists: &plan.draw_lists,
             max_texture_2d: self.facts.max_texture_2d,
         };
-        let adopted =
-            publish(world, &publish_request).and_then(|published| self.executor.adopt(Arc::clone(&plan), Arc::new(published.scene)));
+        let adopted = publish(world, &publish_request).and_then(|published| {
+            let scene = Arc::new(published.scene);
+            self.on_living_device(|executor| executor.adopt(Arc::clone(&plan), Arc::clone(&scene)))
+        });
         adopted.map_err(|problems| (problems, sources.clone()))?;
         self.camera = request.camera.map(str::to_owned);
         (self.plan, self.warnings) = (plan, (diagnostics, sources));

@@ -4,27 +4,14 @@
 use luminaire::files::{embedded_pipelines, embedded_scenes};
 use luminaire::graph::device::DeviceFacts;
 use luminaire::graph::diagnostic::render;
-use luminaire::graph::source::SourceMap;
 use luminaire::passes::{Adapter, facts};
-use luminaire::scenes::scene_file::load_scene_text;
 use luminaire::session::{RenderRequest, Session, load_scene};
 
-/// A lamp that moves for a long time leaves nothing behind.
+/// Also where nothing would run.
 #[test]
-fn a_long_run_creates_nothing() {
-    let scene = |x: f64| {
-        format!(
-            "(cameras: {{ \"eye\": (position: (0, 1, 4), target: (0, 0, 0)) }},
-            lights: {{ \"lamp\": Point(candela: 3, position: ({x}, 1.5, 1)) }},
-            objects: {{ \"ball\": (shape: Sphere(radius: 0.6), surface: (roughness: 0.5)) }})"
-        )
-    };
-    let world = |x: f64| {
-        let mut sources = SourceMap::default();
-        load_scene_text("moving.ron", &scene(x), &mut sources).expect("the scene is right").world
-    };
-    let mut worlds = [world(0.5), world(0.6)];
+fn a_lost_device_is_replaced() {
     let adapter = Adapter::noop(&DeviceFacts::webgpu_defaults()).expect("the noop adapter needs no driver");
+    let mut loaded = load_scene("scenes/cornell.ron", None).expect("shipped scenes load");
     let request = RenderRequest {
         pipeline: "pipelines/pbr.ron",
         size: [64, 48],
@@ -34,16 +21,16 @@ fn a_long_run_creates_nothing() {
         timing: false,
         memory_budget: None,
     };
-    let mut session = Session::on(&adapter, &mut worlds[0], &request).expect("a session");
-    let mut frame = |index: usize| {
-        session.update(&mut worlds[index % 2]).expect("an update");
-        session.render_frame().expect("a frame")
-    };
-    let first = (0..3).map(&mut frame).last().expect("a frame");
-    for index in 3..10_000 {
-        let next = frame(index);
-        assert!(next.counts.steps > 0 && next.counts.submissions == 1);
-        assert_eq!(next.created, first.created, "frame {index}");
+    let mut session = Session::on(&adapter, &mut loaded.world, &request).expect("a session");
+    let first = session.render_frame().expect("a frame");
+    assert!(session.render_frame().expect("a frame").settled);
+    for losses in 1..4 {
+        session.gpu().device().destroy();
+        let stats = session.render_frame().expect("a frame on another device");
+        assert_eq!((session.recoveries(), stats.counts), (losses, first.counts));
+        assert!(session.render_frame().expect("a frame").settled);
+        let devices = adapter.objects().into_iter().find(|(kind, _)| *kind == "devices");
+        assert_eq!(devices, Some(("devices", 1)), "the lost device is forgotten");
     }
 }
 

@@ -28,15 +28,16 @@ struct Output { color: vec4f }
 struct Tint { color: vec4f }
 var before: texture_2d<f32>;
 var<uniform> tint: Tint;
+var<uniform> shade: Tint;
 @fragment
 fn copy(@builtin(position) at: vec4f) -> Output {
-    return Output(tint.color * textureLoad(before, vec2i(at.xy), 0));
+    return Output(tint.color * shade.color * textureLoad(before, vec2i(at.xy), 0));
 }
 ";
 
 const PASSES: usize = 10_000;
 
-/// A chain whose last `reached` passes depend on the table `tint`.
+/// A chain whose last `reached` passes depend on the tables `tint` and `shade`.
 fn pipeline(reached: usize) -> String {
     let mut text = String::from("(\n    doc: \"Generated.\",\n    resources: {\n");
     for index in 0..=PASSES {
@@ -64,7 +65,10 @@ fn dirty_check(criterion: &mut Criterion) {
         stride: 16,
         per_draw: false,
     };
-    let published = PublishedSchema { tables: [("tint".to_owned(), tint)].into_iter().collect(), ..PublishedSchema::default() };
+    let published = PublishedSchema {
+        tables: [("tint".to_owned(), tint.clone()), ("shade".to_owned(), tint)].into_iter().collect(),
+        ..PublishedSchema::default()
+    };
     for reached in [0, 1, 10, 100, 1_000, PASSES] {
         let files = MemoryFiles::default()
             .with(FileKind::Pipeline, "p.ron", &pipeline(reached))
@@ -86,8 +90,11 @@ fn dirty_check(criterion: &mut Criterion) {
         let first = tracker.frame(&revisions);
         tracker.commit(&first, &revisions);
         assert!(tracker.frame(&revisions).is_empty());
+        let mut both = false;
         let mut run = || {
-            if let Some(revision) = revisions.first_mut() {
+            // One table, both, and again, so that every frame is decided anew.
+            both = !both;
+            for revision in revisions.iter_mut().take(if both { 2 } else { 1 }) {
                 *revision += 1;
             }
             let frame = tracker.frame(&revisions);

@@ -7,10 +7,14 @@
 //! and no types of its own.
 
 use crate::dirty::{Frame, StepRun};
-use crate::expand::types::ClearValue;
+use crate::expand::types::{ClearValue, ResourceId};
 use crate::plan::{MemoryId, PartView, Plan};
 
+mod poison;
 pub mod record;
+
+use poison::Owners;
+pub use poison::execute_poisoned;
 
 /// What runs plans. Every `step` and `clear` is a valid index into the plan's lists.
 pub trait Backend {
@@ -34,6 +38,10 @@ pub trait Backend {
     /// Hands the frame's work to the device. Called once after the last step; not called if no step ran or one failed.
     fn submit(&mut self, plan: &Plan) -> Result<(), Self::Error>;
 
+    /// Fills a resource with what no pass can mistake for its value. Called by [`execute_poisoned`] alone, before a resource is
+    /// written that takes its bytes over.
+    fn poison(&mut self, plan: &Plan, resource: ResourceId) -> Result<(), Self::Error>;
+
     /// Forgets the frame's work, since a step of it failed. Called instead of `submit`.
     fn abandon(&mut self);
 }
@@ -49,10 +57,14 @@ pub fn prepare<B: Backend>(plan: &Plan, taken: &[Option<MemoryId>], backend: &mu
 
 /// Runs a frame of a prepared plan. An empty one submits nothing.
 pub fn execute<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B) -> Result<(), B::Error> {
+    execute_with(plan, frame, backend, &mut None)
+}
+
+fn execute_with<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B, owners: &mut Option<Owners<'_>>) -> Result<(), B::Error> {
     if frame.is_empty() {
         return Ok(());
     }
-    let ran = encode(plan, frame, backend);
+    let ran = encode(plan, frame, backend, owners);
     if ran.is_err() {
         backend.abandon();
         return ran;
@@ -60,14 +72,29 @@ pub fn execute<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B) -> Resul
     backend.submit(plan)
 }
 
-fn encode<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B) -> Result<(), B::Error> {
+fn encode<B: Backend>(plan: &Plan, frame: &Frame, backend: &mut B, owners: &mut Option<Owners<'_>>) -> Result<(), B::Error> {
     for run in &frame.runs {
-        for (part, value) in run.fills.iter().chain(&run.clears) {
+        for (part, value) in &run.fills {
+            if let Some(owners) = owners {
+                owners.take(part.resource, backend)?;
+            }
+            backend.fill(plan, part, *value)?;
+        }
+        if let Some(owners) = owners {
+            owners.step(run.step, backend)?;
+        }
+        for (part, value) in &run.clears {
             backend.fill(plan, part, *value)?;
         }
         backend.run_step(plan, run)?;
     }
-    frame.last_fills.iter().try_for_each(|(part, value)| backend.fill(plan, part, *value))
+    for (part, value) in &frame.last_fills {
+        if let Some(owners) = owners {
+            owners.take(part.resource, backend)?;
+        }
+        backend.fill(plan, part, *value)?;
+    }
+    Ok(())
 }
 
 fn collect<E>(results: impl Iterator<Item = Result<(), E>>) -> Result<(), Vec<E>> {

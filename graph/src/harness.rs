@@ -36,7 +36,7 @@ use crate::plan::{Input, Plan};
 pub struct Harness {
     tracker: Tracker,
     revisions: Vec<u64>,
-    last: Frame,
+    last: Arc<Frame>,
 }
 
 impl Harness {
@@ -52,7 +52,7 @@ impl Harness {
 
     fn play(plan: Arc<Plan>) -> Harness {
         let revisions = vec![0; plan.inputs.len()];
-        Harness { tracker: Tracker::new(plan), revisions, last: Frame::default() }
+        Harness { tracker: Tracker::new(plan), revisions, last: Arc::default() }
     }
 
     /// Turns to another plan, as after a resize, a changed parameter or an edited file. What is the same stays held.

@@ -8,7 +8,7 @@ use std::collections::HashMap;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::dirty::{Adoption, Remembered, StepRun};
 use luminaire_graph::execute::Backend;
-use luminaire_graph::expand::types::ClearValue;
+use luminaire_graph::expand::types::{ClearValue, ResourceId};
 use luminaire_graph::plan::{MemoryId, PartView, Plan, Step, StepKind};
 
 use crate::clear::ClearStep;
@@ -17,6 +17,7 @@ use crate::copy::CopyStep;
 use crate::draw::DrawStep;
 use crate::errors::{Subject, catch};
 use crate::fullscreen::FullscreenStep;
+use crate::poison;
 use crate::remember::{Carried, RememberStep};
 use crate::scene_data::SceneData;
 use crate::store::Store;
@@ -130,7 +131,12 @@ impl Backend for WgpuBackend {
 
     fn create_memory(&mut self, plan: &Plan, memory: MemoryId) -> Result<(), Diagnostic> {
         let Store { gpu, memories, .. } = &mut self.store;
-        memories.create(gpu, plan, memory)
+        memories.create(gpu, plan, memory)?;
+        if gpu.poison {
+            let holders = &plan.memories[memory.index()].holders;
+            holders.iter().try_for_each(|holder| self.poison(plan, *holder))?;
+        }
+        Ok(())
     }
 
     fn prepare_step(&mut self, plan: &Plan, index: usize) -> Result<(), Diagnostic> {
@@ -209,17 +215,26 @@ impl Backend for WgpuBackend {
             timing.resolve(&mut encoder);
         }
         let gpu = &self.store.gpu;
-        let ((), errors) = catch(&gpu.device, || {
-            gpu.queue.submit([encoder.finish()]);
-        });
+        // Errors reach the sink: scopes would cost as much as a pass.
+        gpu.queue.submit([encoder.finish()]);
         // A lost device may raise errors everywhere; the loss explains them.
         gpu.check_alive()?;
-        let subject = Subject::nowhere(format!("a frame of `{}`", plan.name));
-        subject.check(&errors)?;
-        subject.check(&gpu.errors.take())?;
+        let errors = gpu.errors.take();
+        if !errors.is_empty() {
+            Subject::nowhere(format!("a frame of `{}`", plan.name)).check(&errors)?;
+        }
         self.counts.submissions += 1;
         self.carried.clear();
         Ok(())
+    }
+
+    fn poison(&mut self, plan: &Plan, resource: ResourceId) -> Result<(), Diagnostic> {
+        self.encoder();
+        let device = self.store.gpu.device.clone();
+        let WgpuBackend { store, encoder: Some(encoder), .. } = self else { return Ok(()) };
+        let (poisoned, errors) = catch(&device, || poison::encode(store, encoder, plan, resource));
+        Subject::nowhere(format!("the poison of `{}`", plan.resources[resource.index()].name)).check(&errors)?;
+        poisoned
     }
 
     fn abandon(&mut self) {

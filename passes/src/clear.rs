@@ -3,8 +3,6 @@
 //! A flat texture that can be drawn into is cleared by attaching it; another one gets its bytes from a filled buffer, one row
 //! of slices for all clears of the same size and value, made before the first frame. Buffers can only be zeroed.
 
-use std::collections::HashMap;
-
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::expand::types::{ClearValue, Dimension};
 use luminaire_graph::plan::{PartView, Plan};
@@ -13,6 +11,7 @@ use luminaire_graph::reflect::interface::ViewDimension;
 use crate::convert;
 use crate::device::Gpu;
 use crate::errors::Subject;
+use crate::kept::Kept;
 use crate::store::Store;
 use crate::targets::{ClearTo, clear_view};
 use crate::texel;
@@ -46,15 +45,31 @@ struct Fill {
     bytes_per_row: u32,
 }
 
-/// The filled buffers made so far, by texel, width and height.
-#[derive(Debug, Default, Clone)]
+/// The filled buffers of a plan and the one before, by texel, width and height.
+#[derive(Debug, Default)]
 pub(crate) struct Fills {
-    made: HashMap<(Vec<u8>, u32, u32), Fill>,
+    made: Kept<(Vec<u8>, u32, u32), Fill>,
 }
 
 impl Fills {
+    /// A buffer of equal texels, without gaps if a row is a multiple of what copies need.
+    pub(crate) fn buffer(&mut self, gpu: &Gpu, texel: &[u8], width: u32, height: u32) -> wgpu::Buffer {
+        self.get(gpu, texel, width, height).buffer
+    }
+
     fn get(&mut self, gpu: &Gpu, texel: &[u8], width: u32, height: u32) -> Fill {
-        self.made.entry((texel.to_vec(), width, height)).or_insert_with(|| fill(gpu, texel, width, height)).clone()
+        let key = (texel.to_vec(), width, height);
+        if let Some(made) = self.made.get(&key) {
+            return made;
+        }
+        let made = fill(gpu, texel, width, height);
+        self.made.insert(key, made.clone());
+        made
+    }
+
+    /// For the next plan.
+    pub(crate) fn successor(&self) -> Fills {
+        Fills { made: self.made.successor() }
     }
 }
 

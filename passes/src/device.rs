@@ -29,31 +29,35 @@ pub struct GpuOptions {
     pub noop: Option<DeviceFacts>,
     /// Bytes that a plan may allocate; [`DEFAULT_MEMORY_BUDGET`] unless said.
     pub memory_budget: Option<u64>,
+    /// For tests, see [`Adapter::poisoned`].
+    pub poison: bool,
 }
 
 /// A GPU, or a program that behaves like one, not opened yet.
 #[derive(Debug, Clone)]
 pub struct Adapter {
+    instance: wgpu::Instance,
     adapter: wgpu::Adapter,
     name: String,
     memory_budget: u64,
+    poison: bool,
 }
 
 impl Adapter {
-    fn new(adapter: wgpu::Adapter, memory_budget: u64) -> Adapter {
+    fn new(instance: &wgpu::Instance, adapter: wgpu::Adapter, memory_budget: u64) -> Adapter {
         let name = adapter.get_info().name;
-        Adapter { adapter, name, memory_budget }
+        Adapter { instance: instance.clone(), adapter, name, memory_budget, poison: false }
     }
 
     /// The best Vulkan adapter: discrete before integrated before virtual before software, then as the driver lists them.
     /// [`ADAPTER_VARIABLE`] overrides that. Error `device::no-adapter`.
     pub fn choose(memory_budget: Option<u64>) -> Result<Adapter, Vec<Diagnostic>> {
         let wanted = std::env::var(ADAPTER_VARIABLE).ok().filter(|wanted| !wanted.is_empty());
-        let adapters = enumerate();
+        let (instance, adapters) = enumerate();
         let names: Vec<String> = adapters.iter().map(|adapter| adapter.get_info().name).collect();
         let kinds: Vec<wgpu::DeviceType> = adapters.iter().map(|adapter| adapter.get_info().device_type).collect();
         match best(&names, &kinds, wanted.as_deref()).and_then(|index| adapters.into_iter().nth(index)) {
-            Some(adapter) => Ok(Adapter::new(adapter, memory_budget.unwrap_or(DEFAULT_MEMORY_BUDGET))),
+            Some(adapter) => Ok(Adapter::new(&instance, adapter, memory_budget.unwrap_or(DEFAULT_MEMORY_BUDGET))),
             None => Err(vec![no_adapter(&names, wanted.as_deref())]),
         }
     }
@@ -71,9 +75,16 @@ impl Adapter {
             ..wgpu::InstanceDescriptor::new_without_display_handle()
         });
         match block_on(instance.enumerate_adapters(wgpu::Backends::NOOP)).into_iter().next() {
-            Some(adapter) => Ok(Adapter { adapter, name: facts.name.clone(), memory_budget: facts.memory_budget }),
+            Some(adapter) => Ok(Adapter { instance, adapter, name: facts.name.clone(), memory_budget: facts.memory_budget, poison: false }),
             None => Err(vec![Diagnostic::error("device::no-adapter", "the noop adapter is not there")]),
         }
+    }
+
+    /// The same adapter for tests: on its devices every memory is poisoned when it is made, and again whenever a resource takes
+    /// bytes over from another one, so that whatever relies on leftovers shows (NaN, magenta, all ones). Slow, and of no use
+    /// otherwise: the results are the same.
+    pub fn poisoned(self) -> Adapter {
+        Adapter { poison: true, ..self }
     }
 
     /// The adapter's name, for messages.
@@ -95,6 +106,31 @@ impl Adapter {
             ("driver", format!("{} {}", info.driver, info.driver_info).trim().to_owned()),
             ("backend", info.backend.to_string()),
         ]
+    }
+
+    /// How many objects of each kind wgpu holds for all devices that were opened through this adapter or its kin (adapters that
+    /// were listed together); to see that a long run leaves nothing behind.
+    pub fn objects(&self) -> Vec<(&'static str, usize)> {
+        let Some(report) = self.instance.generate_report() else { return Vec::new() };
+        let hub = report.hub_report();
+        let registries = [
+            ("devices", &hub.devices),
+            ("queues", &hub.queues),
+            ("pipeline layouts", &hub.pipeline_layouts),
+            ("shader modules", &hub.shader_modules),
+            ("bind group layouts", &hub.bind_group_layouts),
+            ("bind groups", &hub.bind_groups),
+            ("command encoders", &hub.command_encoders),
+            ("command buffers", &hub.command_buffers),
+            ("render pipelines", &hub.render_pipelines),
+            ("compute pipelines", &hub.compute_pipelines),
+            ("query sets", &hub.query_sets),
+            ("buffers", &hub.buffers),
+            ("textures", &hub.textures),
+            ("texture views", &hub.texture_views),
+            ("samplers", &hub.samplers),
+        ];
+        registries.map(|(kind, registry)| (kind, registry.num_kept_from_user)).to_vec()
     }
 
     /// Opens a device with the required features, timestamps if `timing` and the adapter has them, and all of the adapter's
@@ -125,15 +161,15 @@ impl Adapter {
         let errors = ErrorSink::default();
         errors.install(&device);
         let facts = facts(name, &device.limits(), device.features(), self.memory_budget);
-        Ok(Gpu { device, queue, errors, facts })
+        Ok(Gpu { device, queue, errors, facts, poison: self.poison })
     }
 }
 
 /// Every Vulkan adapter, in the order in which [`Adapter::choose`] prefers them.
 pub fn adapters() -> Vec<Adapter> {
-    let mut all = enumerate();
+    let (instance, mut all) = enumerate();
     all.sort_by_key(|adapter| rank(adapter.get_info().device_type));
-    all.into_iter().map(|adapter| Adapter::new(adapter, DEFAULT_MEMORY_BUDGET)).collect()
+    all.into_iter().map(|adapter| Adapter::new(&instance, adapter, DEFAULT_MEMORY_BUDGET)).collect()
 }
 
 /// An open device. Clones share it.
@@ -143,6 +179,8 @@ pub struct Gpu {
     pub(crate) queue: wgpu::Queue,
     pub(crate) errors: ErrorSink,
     facts: DeviceFacts,
+    /// Memories are poisoned, see [`Adapter::poisoned`].
+    pub(crate) poison: bool,
 }
 
 impl Gpu {
@@ -152,6 +190,7 @@ impl Gpu {
             Some(facts) => Adapter::noop(facts)?,
             None => Adapter::choose(options.memory_budget)?,
         };
+        let adapter = if options.poison { adapter.poisoned() } else { adapter };
         adapter.open(&options.requirements, options.timing)
     }
 
@@ -168,6 +207,11 @@ impl Gpu {
     /// The queue of the device.
     pub fn queue(&self) -> &wgpu::Queue {
         &self.queue
+    }
+
+    /// Bytes that stand on the device; `None` where its allocator does not say.
+    pub fn allocated_bytes(&self) -> Option<u64> {
+        self.device.generate_allocator_report().map(|report| report.total_allocated_bytes)
     }
 
     /// Waits until the device has done all that was submitted.
@@ -189,12 +233,13 @@ impl Gpu {
     }
 }
 
-fn enumerate() -> Vec<wgpu::Adapter> {
+fn enumerate() -> (wgpu::Instance, Vec<wgpu::Adapter>) {
     let instance = wgpu::Instance::new(wgpu::InstanceDescriptor {
         backends: wgpu::Backends::VULKAN,
         ..wgpu::InstanceDescriptor::new_without_display_handle()
     });
-    block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN))
+    let adapters = block_on(instance.enumerate_adapters(wgpu::Backends::VULKAN));
+    (instance, adapters)
 }
 
 fn rank(kind: wgpu::DeviceType) -> u32 {

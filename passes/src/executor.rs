@@ -1,8 +1,8 @@
 //! A plan and a scene on a device: prepared once, rendered frame after frame.
 //!
 //! Guarantees: everything is checked and created by [`Executor::new`]; a frame runs what the changes reach, and creates nothing but
-//! its command buffer (a declared value that is set for the first time apart); the same plan and scene give the same images. After an error the executor may be dropped or, unless the device was lost, used
-//! on.
+//! its command buffer (a declared value that is set for the first time apart); the same plan and scene give the same images. After an error the executor may be dropped or used
+//! on; where the device was lost, after [`Executor::recover`].
 
 use std::sync::Arc;
 
@@ -28,11 +28,13 @@ use crate::timing::{FrameCounts, StepTime, Timing};
 pub struct Executor {
     plan: Arc<Plan>,
     backend: WgpuBackend,
+    /// As last taken over.
+    scene: Arc<PublishedScene>,
     tracker: Tracker,
     revisions: Revisions,
     /// By input of the plan.
     now: Vec<u64>,
-    last: Frame,
+    last: Arc<Frame>,
 }
 
 /// What a frame did and cost.
@@ -60,21 +62,26 @@ impl Executor {
     /// with the scene (`execute::missing-table` and others), and per pass `execute::validation` (wgpu refuses it),
     /// `execute::out-of-memory`, `execute::internal`, `execute::device-lost`.
     pub fn new(gpu: &Gpu, plan: Arc<Plan>, schema: &PublishedSchema, scene: Arc<PublishedScene>) -> Result<Executor, Vec<Diagnostic>> {
-        let problems = check::check(&plan, &scene, gpu.facts());
-        if !problems.is_empty() {
-            return Err(problems);
-        }
-        let data = SceneData::new(gpu, &plan, schema, scene)?;
-        let timing = Timing::new(gpu, plan.steps.len()).map_err(|problem| vec![problem])?;
+        let backend = start(gpu, &plan, schema, &scene)?;
         let tracker = Tracker::new(Arc::clone(&plan));
-        let mut backend = WgpuBackend::new(Store::new(gpu.clone(), schema.clone(), data), timing);
-        let prepared = execute::prepare(&plan, &[], &mut backend);
-        // A lost device may raise errors everywhere; the loss explains them.
-        gpu.check_alive().map_err(|problem| vec![problem])?;
-        prepared?;
         let mut revisions = Revisions::default();
-        let now = revisions.update(&plan, schema, &PublishedScene::default(), &backend.store.scene.scene);
-        Ok(Executor { plan, backend, tracker, revisions, now, last: Frame::default() })
+        let now = revisions.update(&plan, schema, &PublishedScene::default(), &scene);
+        Ok(Executor { plan, backend, scene, tracker, revisions, now, last: Arc::default() })
+    }
+
+    /// Whether the device is lost. Nothing but [`Executor::recover`] helps then. Waits for the device, since wgpu tells nobody before
+    /// all work has ended.
+    pub fn is_lost(&self) -> bool {
+        self.gpu().wait().is_err()
+    }
+
+    /// Goes on with another device after the one that it had was lost. All content is gone: the next frame runs everything, what
+    /// accumulates starts again, the past is its first value, and counts of what was created begin anew. Errors as of [`Executor::new`]; it may be tried again then.
+    pub fn recover(&mut self, gpu: &Gpu) -> Result<(), Vec<Diagnostic>> {
+        self.backend = start(gpu, &self.plan, &self.backend.store.schema, &self.scene)?;
+        self.tracker.lose();
+        self.last = Arc::default();
+        Ok(())
     }
 
     /// Turns to another plan on the same device: after a resize, a parameter, an edited file, another output. What is the same
@@ -87,7 +94,7 @@ impl Executor {
             return Err(problems);
         }
         let before = Arc::clone(&data.scene);
-        let (data, changed) = data.successor(&gpu, &plan, &schema, scene)?;
+        let (data, changed) = data.successor(&gpu, &plan, &schema, Arc::clone(&scene))?;
         let timing =
             Timing::new(&gpu, if self.backend.timing.is_some() { plan.steps.len() } else { 0 }).map_err(|problem| vec![problem])?;
         let mut tracker = self.tracker.clone();
@@ -100,8 +107,13 @@ impl Executor {
             return Err(problems);
         }
         self.now = self.revisions.update(&plan, &schema, &before, &backend.store.scene.scene);
-        (self.plan, self.backend, self.tracker, self.last) = (plan, backend, tracker, Frame::default());
+        (self.plan, self.backend, self.scene, self.tracker, self.last) = (plan, backend, scene, tracker, Arc::default());
         Ok(())
+    }
+
+    /// The device that it runs on.
+    pub fn gpu(&self) -> &Gpu {
+        &self.backend.store.gpu
     }
 
     /// The plan that it runs.
@@ -116,7 +128,8 @@ impl Executor {
     pub fn update_scene(&mut self, scene: Arc<PublishedScene>) -> Result<(), Vec<Diagnostic>> {
         let Store { gpu, schema, scene: data, bind_groups, .. } = &mut self.backend.store;
         let before = Arc::clone(&data.scene);
-        let changed = data.update(gpu, &self.plan, schema, scene)?;
+        let changed = data.update(gpu, &self.plan, schema, Arc::clone(&scene))?;
+        self.scene = scene;
         if !Arc::ptr_eq(&before, &data.scene) {
             self.now = self.revisions.update(&self.plan, schema, &before, &data.scene);
         }
@@ -137,11 +150,20 @@ impl Executor {
     }
 
     /// Runs what the changes since the last frame reach. Where nothing changed nothing is submitted. A frame that fails is decided
-    /// again by the next call.
+    /// again by the next call. A lost device is noticed even where nothing runs,
+    /// when its last work has ended.
     pub fn render_frame(&mut self) -> Result<FrameStats, Vec<Diagnostic>> {
         self.backend.begin_frame();
         let frame = self.tracker.frame(&self.now);
-        match execute::execute(&self.plan, &frame, &mut self.backend) {
+        if frame.is_empty() {
+            self.gpu().check_alive().map_err(|problem| vec![problem])?;
+        }
+        let ran = if self.backend.store.gpu.poison {
+            execute::execute_poisoned(&self.tracker, &frame, &mut self.backend)
+        } else {
+            execute::execute(&self.plan, &frame, &mut self.backend)
+        };
+        match ran {
             Ok(()) => self.tracker.commit(&frame, &self.now),
             Err(problem) => {
                 if self.backend.store.gpu.check_alive().is_err() {
@@ -223,4 +245,20 @@ impl Executor {
                 .maybe_hint(did_you_mean(name, outputs.iter().map(|output| output.name.as_str())))
         })
     }
+}
+
+/// Checks a plan and a scene against a device, and creates everything.
+fn start(gpu: &Gpu, plan: &Plan, schema: &PublishedSchema, scene: &Arc<PublishedScene>) -> Result<WgpuBackend, Vec<Diagnostic>> {
+    let problems = check::check(plan, scene, gpu.facts());
+    if !problems.is_empty() {
+        return Err(problems);
+    }
+    let data = SceneData::new(gpu, plan, schema, Arc::clone(scene))?;
+    let timing = Timing::new(gpu, plan.steps.len()).map_err(|problem| vec![problem])?;
+    let mut backend = WgpuBackend::new(Store::new(gpu.clone(), schema.clone(), data), timing);
+    let prepared = execute::prepare(plan, &[], &mut backend);
+    // A lost device may raise errors everywhere; the loss explains them.
+    gpu.check_alive().map_err(|problem| vec![problem])?;
+    prepared?;
+    Ok(backend)
 }

@@ -3,7 +3,6 @@
 //! A loop over faces or lights unrolls to many steps with one pipeline between them. Keys hold every input of a pipeline, so
 //! that equal keys mean equal pipelines.
 
-use std::collections::HashMap;
 use std::sync::Arc;
 
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
@@ -15,6 +14,7 @@ use luminaire_graph::syntax::document::{BlendDoc, CompareDoc};
 use crate::convert;
 use crate::errors::Subject;
 use crate::fullscreen;
+use crate::kept::Kept;
 use crate::layouts::{GroupLayouts, Layouts};
 
 /// The stages before the fragment stage.
@@ -110,19 +110,31 @@ impl std::hash::Hash for ShaderText {
     }
 }
 
-/// Every module and pipeline made so far; one set serves all plans of an executor.
-#[derive(Debug, Default, Clone)]
+/// The modules and pipelines of a plan and the one before.
+#[derive(Debug, Default)]
 pub(crate) struct Pipelines {
-    modules: HashMap<ShaderText, wgpu::ShaderModule>,
+    modules: Kept<ShaderText, wgpu::ShaderModule>,
     fullscreen: Option<wgpu::ShaderModule>,
-    render: HashMap<RenderKey, wgpu::RenderPipeline>,
-    compute: HashMap<ComputeKey, wgpu::ComputePipeline>,
+    render: Kept<RenderKey, wgpu::RenderPipeline>,
+    compute: Kept<ComputeKey, wgpu::ComputePipeline>,
+    created: u64,
 }
 
 impl Pipelines {
     /// How many pipelines were created.
     pub(crate) fn created(&self) -> u64 {
-        (self.render.len() + self.compute.len()) as u64
+        self.created
+    }
+
+    /// For the next plan.
+    pub(crate) fn successor(&self) -> Pipelines {
+        Pipelines {
+            modules: self.modules.successor(),
+            fullscreen: self.fullscreen.clone(),
+            render: self.render.successor(),
+            compute: self.compute.successor(),
+            created: self.created,
+        }
     }
 
     /// The pipeline of a key. Runs in the caller's error scope.
@@ -136,7 +148,7 @@ impl Pipelines {
         key: &RenderKey,
     ) -> Result<wgpu::RenderPipeline, Diagnostic> {
         if let Some(pipeline) = self.render.get(key) {
-            return Ok(pipeline.clone());
+            return Ok(pipeline);
         }
         let module = self.module(device, plan, subject, key.shader.as_ref())?;
         let constants: Vec<(&str, f64)> = constant_refs(&key.constants);
@@ -191,6 +203,7 @@ impl Pipelines {
             multiview_mask: None,
             cache: None,
         });
+        self.created += 1;
         self.render.insert(key.clone(), pipeline.clone());
         Ok(pipeline)
     }
@@ -205,7 +218,7 @@ impl Pipelines {
         key: &ComputeKey,
     ) -> Result<wgpu::ComputePipeline, Diagnostic> {
         if let Some(pipeline) = self.compute.get(key) {
-            return Ok(pipeline.clone());
+            return Ok(pipeline);
         }
         let module = self.module(device, plan, subject, key.shader.as_ref())?;
         let pipeline = device.create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -216,6 +229,7 @@ impl Pipelines {
             compilation_options: wgpu::PipelineCompilationOptions { constants: &constant_refs(&key.constants), ..Default::default() },
             cache: None,
         });
+        self.created += 1;
         self.compute.insert(key.clone(), pipeline.clone());
         Ok(pipeline)
     }
@@ -231,13 +245,15 @@ impl Pipelines {
         let Some((text, shader)) = found else {
             return Err(subject.error("execute::no-shader", "it has no shader"));
         };
-        let module = self.modules.entry(text.clone()).or_insert_with(|| {
-            device.create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(&shader.path),
-                source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned((*shader.module).clone())),
-            })
+        if let Some(module) = self.modules.get(text) {
+            return Ok(module);
+        }
+        let module = device.create_shader_module(wgpu::ShaderModuleDescriptor {
+            label: Some(&shader.path),
+            source: wgpu::ShaderSource::Naga(std::borrow::Cow::Owned((*shader.module).clone())),
         });
-        Ok(module.clone())
+        self.modules.insert(text.clone(), module.clone());
+        Ok(module)
     }
 }
 

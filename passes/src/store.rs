@@ -41,7 +41,7 @@ impl Store {
         }
     }
 
-    /// For a new plan: pipelines, layouts and fills serve on, and memories that it takes over.
+    /// For a new plan: pipelines, layouts and fills serve on where it uses them, and memories that it takes over.
     pub(crate) fn successor(&self, taken: &[Option<MemoryId>], scene: SceneData, same_scene: bool) -> Store {
         Store {
             gpu: self.gpu.clone(),
@@ -49,9 +49,9 @@ impl Store {
             scene,
             memories: self.memories.successor(taken),
             layouts: self.layouts.clone(),
-            pipelines: self.pipelines.clone(),
+            pipelines: self.pipelines.successor(),
             bind_groups: self.bind_groups.successor(same_scene),
-            fills: self.fills.clone(),
+            fills: self.fills.successor(),
         }
     }
 

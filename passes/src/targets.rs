@@ -11,11 +11,14 @@ use crate::errors::Subject;
 use crate::textures::Memories;
 use crate::timing::Stamps;
 
+/// A view and what it starts from; `None` where an output goes nowhere.
+type Color = Option<(wgpu::TextureView, wgpu::LoadOp<wgpu::Color>)>;
+
 /// Attachments with their views.
 #[derive(Debug, Clone)]
 pub(crate) struct Attachments {
     name: String,
-    colors: Vec<Option<(wgpu::TextureView, wgpu::LoadOp<wgpu::Color>)>>,
+    colors: Vec<Color>,
     depth: Option<(wgpu::TextureView, Option<wgpu::LoadOp<f32>>)>,
 }
 
@@ -66,21 +69,21 @@ impl Attachments {
         encoder: &'encoder mut wgpu::CommandEncoder,
         stamps: Option<Stamps<'_>>,
     ) -> wgpu::RenderPass<'encoder> {
-        let colors: Vec<Option<wgpu::RenderPassColorAttachment<'_>>> = self
-            .colors
-            .iter()
-            .map(|color| {
-                color.as_ref().map(|(view, load)| wgpu::RenderPassColorAttachment {
-                    view,
-                    depth_slice: None,
-                    resolve_target: None,
-                    ops: wgpu::Operations { load: *load, store: wgpu::StoreOp::Store },
-                })
-            })
-            .collect();
+        let (one, several);
+        let colors: &[Option<wgpu::RenderPassColorAttachment<'_>>] = match self.colors.as_slice() {
+            // The usual case allocates nothing.
+            [color] => {
+                one = [attachment(color)];
+                &one
+            }
+            colors => {
+                several = colors.iter().map(attachment).collect::<Vec<_>>();
+                &several
+            }
+        };
         encoder.begin_render_pass(&wgpu::RenderPassDescriptor {
             label: Some(&self.name),
-            color_attachments: &colors,
+            color_attachments: colors,
             depth_stencil_attachment: self.depth.as_ref().map(|(view, load)| wgpu::RenderPassDepthStencilAttachment {
                 view,
                 depth_ops: load.map(|load| wgpu::Operations { load, store: wgpu::StoreOp::Store }),
@@ -94,6 +97,15 @@ impl Attachments {
             ..wgpu::RenderPassDescriptor::default()
         })
     }
+}
+
+fn attachment(color: &Color) -> Option<wgpu::RenderPassColorAttachment<'_>> {
+    color.as_ref().map(|(view, load)| wgpu::RenderPassColorAttachment {
+        view,
+        depth_slice: None,
+        resolve_target: None,
+        ops: wgpu::Operations { load: *load, store: wgpu::StoreOp::Store },
+    })
 }
 
 /// One attachment and nothing drawn: how parts are cleared.

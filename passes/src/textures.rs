@@ -70,13 +70,13 @@ impl Memories {
                 sample_count: shape.samples,
                 dimension: convert::texture_dimension(shape.dimension),
                 format: convert::texture_format(*format),
-                usage: texture_usages(plan, planned, shape, *format),
+                usage: texture_usages(plan, planned, shape, *format, gpu.poison),
                 view_formats: &[],
             })),
             MemoryKind::Arena => GpuMemory::Arena(gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(&label),
                 size: planned.bytes.max(4),
-                usage: buffer_usages(plan, planned),
+                usage: buffer_usages(plan, planned, gpu.poison),
                 mapped_at_creation: false,
             })),
         });
@@ -172,13 +172,13 @@ fn is_output(plan: &Plan, memory: &Memory) -> bool {
     plan.outputs.iter().any(|output| memory.holders.contains(&output.view.resource))
 }
 
-fn texture_usages(plan: &Plan, memory: &Memory, shape: &TextureShape, format: Format) -> wgpu::TextureUsages {
+fn texture_usages(plan: &Plan, memory: &Memory, shape: &TextureShape, format: Format, poison: bool) -> wgpu::TextureUsages {
     let mut usages = convert::texture_usages(memory.usage);
     // The plan's `copy_target` holds clears too, which for many formats are no copies.
     if is_copied_to(plan, memory) {
         usages |= wgpu::TextureUsages::COPY_DST;
     }
-    if is_cleared(plan, memory) {
+    if poison || is_cleared(plan, memory) {
         let by_attachment = clears_by_attachment(shape, format);
         usages |= if by_attachment { wgpu::TextureUsages::RENDER_ATTACHMENT } else { wgpu::TextureUsages::COPY_DST };
     }
@@ -188,9 +188,9 @@ fn texture_usages(plan: &Plan, memory: &Memory, shape: &TextureShape, format: Fo
     usages
 }
 
-fn buffer_usages(plan: &Plan, memory: &Memory) -> wgpu::BufferUsages {
+fn buffer_usages(plan: &Plan, memory: &Memory, poison: bool) -> wgpu::BufferUsages {
     let mut usages = convert::buffer_usages(memory.usage);
-    if is_cleared(plan, memory) || is_copied_to(plan, memory) {
+    if poison || is_cleared(plan, memory) || is_copied_to(plan, memory) {
         usages |= wgpu::BufferUsages::COPY_DST;
     }
     if is_output(plan, memory) || usages.is_empty() {

@@ -130,7 +130,7 @@ fn stats(session: &Session, frame: &FrameStats, frames: u32, arguments: &RenderA
     json!({
         "pipeline": session.plan.name,
         "scene": arguments.scene,
-        "adapter": session.adapter,
+        "adapter": session.adapter.name(),
         "size": session.plan.extent,
         "frames": frames,
         "seconds": elapsed.as_secs_f64(),

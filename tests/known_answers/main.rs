@@ -1,4 +1,4 @@
-//! Pictures whose pixels are known from formulas: light, materials, shadows, tone mapping, orientation.
+//! Pictures whose pixels are known from formulas: light, materials, shadows, tone mapping, orientation; and what runs leave behind.
 //!
 //! Each rendering is at most 256 by 256 pixels. Tolerances stand near the errors that were measured on Mesa's software driver, which
 //! each test states. Half floats, in which light is accumulated, are good to 2^-10 = 0.098 %: that driver rounds them towards zero.
@@ -13,6 +13,7 @@ mod irradiance;
 mod masks;
 mod materials;
 mod orientation;
+mod runs;
 mod shadows;
 mod steady;
 mod tone_mapping;
@@ -25,12 +26,13 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 8] = [
+    let groups: [&[Case]; 9] = [
         brdf::CASES,
         irradiance::CASES,
         masks::CASES,
         materials::CASES,
         orientation::CASES,
+        runs::CASES,
         shadows::CASES,
         steady::CASES,
         tone_mapping::CASES,

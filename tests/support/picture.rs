@@ -78,7 +78,15 @@ impl Shot {
     }
 
     pub fn session(&self, world: &mut World) -> Result<Session, Failed> {
-        let adapter = adapter().ok_or("no adapter")?;
+        self.session_on(adapter().ok_or("no adapter")?, world)
+    }
+
+    /// On memory that holds poison until something is written.
+    pub fn poisoned_session(&self, world: &mut World) -> Result<Session, Failed> {
+        self.session_on(&adapter().cloned().ok_or("no adapter")?.poisoned(), world)
+    }
+
+    fn session_on(&self, adapter: &Adapter, world: &mut World) -> Result<Session, Failed> {
         Session::on(adapter, world, &self.request()).map_err(shown)
     }
 

@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use super::Remembered;
 use super::flow::Flow;
-use super::maker::input_places;
+use super::maker::{Names, input_places};
 use super::tracker::{Tracker, Turn};
 use crate::expand::types::{OnResize, ResourceId, Run};
 use crate::plan::{MemoryId, MemoryKind, Plan, PlannedShape};
@@ -42,10 +42,9 @@ impl Tracker {
     /// Turns to another plan. The backend moves the memories as it is told.
     pub fn adopt(&mut self, plan: Arc<Plan>) -> Adoption {
         let mut new = Tracker { frames: self.frames, ..Tracker::new(plan) };
-        new.names = std::mem::take(&mut self.names);
         let resources = self.resources_in(&new);
         let memories = self.memories_in(&mut new, &resources);
-        let (named, nodes) = self.nodes_in(&mut new);
+        let (named, nodes) = self.nodes_in(&new);
         self.find_remade(&mut new, &resources);
         self.keep_pieces(&mut new, &resources, &memories, &named);
         self.keep_states(&mut new, &named, &nodes);
@@ -96,8 +95,8 @@ impl Tracker {
     }
 
     /// By node of the new plan: the old one of its name, and the same if it is made and reads the same.
-    fn nodes_in(&mut self, new: &mut Tracker) -> (Vec<Option<u32>>, Vec<Option<u32>>) {
-        let names = &mut new.names;
+    fn nodes_in(&self, new: &Tracker) -> (Vec<Option<u32>>, Vec<Option<u32>>) {
+        let names = &mut Names::default();
         let (old_resources, new_resources) = (names.resources(&self.plan), names.resources(&new.plan));
         let old_keys: Vec<Key> = keys(&self.flow, &self.plan, names);
         let new_keys: Vec<Key> = keys(&new.flow, &new.plan, names);
@@ -271,7 +270,7 @@ impl Tracker {
     }
 }
 
-fn keys(flow: &Flow, plan: &Plan, names: &mut super::maker::Names) -> Vec<Key> {
+fn keys(flow: &Flow, plan: &Plan, names: &mut Names) -> Vec<Key> {
     flow.nodes.iter().map(|node| (names.of(format!("pass {}", plan.steps[node.step as usize].name)), node.iteration)).collect()
 }
 

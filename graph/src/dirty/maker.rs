@@ -9,8 +9,8 @@ use crate::expand::types::{PassId, ResourceId};
 use crate::plan::{BindingTarget, Input, InputId, PartView, Plan, Step, StepKind, Targets, Workgroups};
 use crate::source::Span;
 
-/// Texts by number. One table serves all plans of a tracker.
-#[derive(Debug, Clone, Default)]
+/// Texts by number. One table serves the two plans that are compared.
+#[derive(Debug, Default)]
 pub(super) struct Names {
     known: HashMap<String, u32>,
 }

@@ -9,6 +9,8 @@
 //! submitted; in between nothing changes, so that a frame that failed is decided again. [`retention`] chooses, when a plan is made,
 //! what keeps its content.
 //!
+//! A decision that came several times in a row is kept ([`habit`]).
+//!
 //! Accepted: a history is remembered whole, so that its readers run when any part of it changed. A frame compares the revision of
 //! every input; all else costs time in proportion to what the changes reach.
 
@@ -16,6 +18,7 @@ mod adopt;
 mod cells;
 mod closure;
 mod flow;
+mod habit;
 mod maker;
 mod pull;
 mod retention;
@@ -24,6 +27,7 @@ mod tracker;
 pub use adopt::{Adoption, Carry};
 pub use retention::{Retention, retention};
 pub use tracker::Tracker;
+pub(crate) use tracker::overlap;
 
 use crate::expand::types::{ClearValue, ResourceId};
 use crate::plan::{InputId, PartView};

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::closure::Closure;
 use super::flow::{Flow, FlowInput};
-use super::maker::Names;
+use super::habit::Habit;
 use super::{Frame, Idle, Remembered};
 use crate::expand::types::{ClearValue, OnResize, ResourceId, Run};
 use crate::plan::{Input, PartView, Plan, PlannedShape, Step, StepKind};
@@ -40,7 +40,6 @@ pub(super) struct Turn {
 pub struct Tracker {
     pub(super) plan: Arc<Plan>,
     pub(super) flow: Flow,
-    pub(super) names: Names,
     pub(super) held: Held,
     /// Nodes that have not run as they are.
     pub(super) fresh: BTreeSet<u32>,
@@ -68,6 +67,8 @@ pub struct Tracker {
     pub(super) ends_open: bool,
     /// Submitted frames.
     pub(super) frames: u64,
+    /// What the last frames had in common.
+    pub(super) habit: Option<Habit>,
 }
 
 impl Tracker {
@@ -94,7 +95,6 @@ impl Tracker {
                 unheld_amortised: BTreeSet::new(),
                 unseen: (0u32..).zip(&flow.pieces).filter(|(_, piece)| flow.is_amortised(piece.unit)).map(|(at, _)| at).collect(),
             },
-            names: Names::default(),
             always,
             gathered,
             turns,
@@ -106,6 +106,7 @@ impl Tracker {
             carried: BTreeMap::new(),
             ends_open: true,
             frames: 0,
+            habit: None,
             flow,
             plan,
         };
@@ -123,19 +124,52 @@ impl Tracker {
         &self.plan.inputs
     }
 
+    /// By memory: the resources whose bytes were left there by the last submitted frame.
+    pub fn residents(&self) -> &[Vec<ResourceId>] {
+        &self.held.residents
+    }
+
     /// Decides what runs, given the revision of each input. Changes nothing.
-    pub fn frame(&self, revisions: &[u64]) -> Frame {
-        Closure::new(self).frame(revisions)
+    pub fn frame(&self, revisions: &[u64]) -> Arc<Frame> {
+        if let Some(frame) = self.habit.as_ref().and_then(|habit| habit.recall(self.changed_inputs(revisions))) {
+            debug_assert_eq!(**frame, Closure::new(self).frame(revisions), "a habit that is none");
+            return Arc::clone(frame);
+        }
+        Arc::new(Closure::new(self).frame(revisions))
+    }
+
+    /// Inputs whose revision is another than when their readers last ran.
+    fn changed_inputs(&self, revisions: &[u64]) -> impl Iterator<Item = u32> {
+        let changed = (0u32..).zip(self.seen.iter().zip(revisions)).filter(|(_, (seen, revision))| **seen != Some(**revision));
+        changed.map(|(input, _)| input)
     }
 
     /// Records a frame that was submitted.
-    pub fn commit(&mut self, frame: &Frame, revisions: &[u64]) {
+    pub fn commit(&mut self, frame: &Arc<Frame>, revisions: &[u64]) {
         if frame.is_empty() {
             return;
         }
+        if self.habit.as_ref().is_some_and(|habit| habit.is(frame)) {
+            // All else is as the frame before left it.
+            self.see(revisions);
+            self.frames += 1;
+            return;
+        }
+        let amortised = |node: &u32| matches!(self.flow.nodes[*node as usize].run, Run::Spread { .. } | Run::Accumulate(_));
+        let repeats = frame.restarted.is_empty() && !frame.changed.iter().any(amortised);
+        let changed = self.changed_inputs(revisions).collect();
+        self.habit = repeats.then(|| Habit::next(self.habit.take(), changed, frame));
+        self.see(revisions);
+        self.settle_frame(frame);
+    }
+
+    fn see(&mut self, revisions: &[u64]) {
         for (seen, revision) in self.seen.iter_mut().zip(revisions) {
             *seen = Some(*revision);
         }
+    }
+
+    fn settle_frame(&mut self, frame: &Frame) {
         self.occupy(frame);
         for node in &frame.changed {
             self.fresh.remove(node);
@@ -177,6 +211,7 @@ impl Tracker {
 
     /// Records that a frame was not submitted, although some of it may have run.
     pub fn fail(&mut self, frame: &Frame) {
+        self.habit = None;
         let mut touched: BTreeSet<ResourceId> = frame.filled.iter().map(|resource| ResourceId(*resource)).collect();
         for unit in &frame.units {
             touched.extend(self.flow.unit_pieces.of(*unit as usize).iter().map(|piece| self.flow.pieces[*piece as usize].resource));
@@ -391,7 +426,7 @@ impl Tracker {
 }
 
 /// Whether two resources of one memory have a byte in common.
-pub(super) fn overlap(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
+pub(crate) fn overlap(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
     let bytes = |id: ResourceId| {
         let resource = &plan.resources[id.index()];
         let start = resource.placement.map_or(0, |placement| placement.offset);

@@ -58,6 +58,11 @@ impl Backend for Recorder {
         Ok(())
     }
 
+    fn poison(&mut self, plan: &Plan, resource: ResourceId) -> Result<(), Infallible> {
+        self.lines.push(format!("poison {}", name(plan, resource)));
+        Ok(())
+    }
+
     fn submit(&mut self, _plan: &Plan) -> Result<(), Infallible> {
         self.lines.push("submit".to_owned());
         Ok(())
@@ -109,9 +114,9 @@ mod tests {
     use std::sync::Arc;
 
     use crate::dirty::{Frame, Tracker};
-    use crate::execute::{execute, prepare};
+    use crate::execute::{execute, execute_poisoned, prepare};
     use crate::expand::types::PassId;
-    use crate::plan::{MemoryFigures, Placement, PlannedResource, PlannedShape, Step, Usage};
+    use crate::plan::{Access, MemoryFigures, Placement, PlannedResource, PlannedShape, Role, Step, Usage, Use};
     use crate::reflect::interface::ViewDimension;
     use crate::source::Span;
 
@@ -176,7 +181,7 @@ mod tests {
         }
     }
 
-    fn frame(plan: &Plan) -> Frame {
+    fn frame(plan: &Plan) -> Arc<Frame> {
         Tracker::new(Arc::new(plan.clone())).frame(&[])
     }
 
@@ -210,6 +215,47 @@ mod tests {
         assert_eq!(idle.text(), "");
     }
 
+    #[test]
+    fn bytes_are_poisoned_when_they_change_hands_and_only_then() {
+        // `b` lies in the bytes of `a`, and `a` is made again after it.
+        let mut plan = plan();
+        plan.resources[1].placement = Some(Placement { memory: MemoryId(0), offset: 0 });
+        plan.steps.push(step("again", StepKind::Clear { target: view(0), value: ClearValue::Zero }));
+        let writes = |resource| Use {
+            resource: ResourceId(resource),
+            mips: 0..1,
+            layers: 0..1,
+            role: Role::Produce,
+            access: Access::Clear,
+            version: None,
+            slot: String::new(),
+            span: Span::NOWHERE,
+        };
+        for (step, resource) in [(0, 0), (1, 1), (2, 0)] {
+            plan.steps[step].uses = vec![writes(resource)];
+        }
+        let mut tracker = Tracker::new(Arc::new(plan.clone()));
+        let mut recorder = Recorder::default();
+        execute_poisoned(&tracker, &tracker.frame(&[]), &mut recorder).unwrap();
+        let wanted = "poison a\n\
+            run reset: clear a.mip(0).layer(0) to zero\n\
+            poison b\n\
+            fill b.mip(0).layer(0) with uint (1, 2, 3, 4)\n\
+            run copy: copy a.mip(0).layer(0) to b.mip(0).layer(0)\n\
+            poison a\n\
+            run again: clear a.mip(0).layer(0) to zero\n\
+            submit\n";
+        assert_eq!(recorder.text(), wanted);
+        // Apart from each other, both are there after the first frame.
+        plan.resources[1].placement = Some(Placement { memory: MemoryId(0), offset: 256 });
+        tracker = Tracker::new(Arc::new(plan));
+        let all = tracker.frame(&[]);
+        tracker.commit(&all, &[]);
+        let mut apart = Recorder::default();
+        execute_poisoned(&tracker, &all, &mut apart).unwrap();
+        assert!(!apart.text().contains("poison"), "{}", apart.text());
+    }
+
     /// Fails at everything.
     struct Broken(Vec<&'static str>);
 
@@ -230,6 +276,10 @@ mod tests {
 
         fn run_step(&mut self, _: &Plan, _: &StepRun) -> Result<(), &'static str> {
             Err("run")
+        }
+
+        fn poison(&mut self, _: &Plan, _: ResourceId) -> Result<(), &'static str> {
+            Ok(())
         }
 
         fn submit(&mut self, _: &Plan) -> Result<(), &'static str> {

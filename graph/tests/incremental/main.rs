@@ -134,7 +134,7 @@ impl World {
 
     fn change(&mut self, choose: &mut Choices<'_>) -> Result<bool, TestCaseError> {
         let mut spec = self.spec.clone();
-        let kind = choose.below(12);
+        let kind = choose.below(13);
         self.log.push(format!("change {kind}"));
         match kind {
             0..=4 => {
@@ -186,6 +186,15 @@ impl World {
                 let mut device = Simulation { created: self.device.created, submitted: self.device.submitted, ..Simulation::default() };
                 execute::prepare(&self.plan, &[], &mut device).map_err(|_| TestCaseError::fail("prepare"))?;
                 self.device = device;
+            }
+            // The same again and again, as where a camera moves.
+            11 => {
+                let input = choose.below(INPUTS as usize);
+                for _ in 0..6 {
+                    self.revisions[input] = self.next;
+                    self.next += 1;
+                    self.frame()?;
+                }
             }
             _ => return Ok(false),
         }

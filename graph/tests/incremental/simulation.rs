@@ -263,6 +263,11 @@ impl Backend for Simulation {
         Ok(())
     }
 
+    // Its bytes know whose they are.
+    fn poison(&mut self, _: &Plan, _: ResourceId) -> Result<(), &'static str> {
+        Ok(())
+    }
+
     fn abandon(&mut self) {}
 }
 
