@@ -33,8 +33,7 @@ pub fn plan(declared: &Declared) -> Ours {
 pub fn plan_of(bound: &Bound) -> Ours {
     let device = DeviceFacts { memory_budget: u64::MAX, ..DeviceFacts::webgpu_defaults() };
     let retained = outputs_alone(bound);
-    let (schedule, problems) = schedule(bound, &retained);
-    let schedule = schedule.unwrap_or_else(|| panic!("{:?}", problems.first()));
+    let schedule = schedule(bound, &retained).unwrap_or_else(|problems| panic!("{:?}", problems.first()));
     let lifetimes = lifetimes(bound, &schedule, retained);
     let allocation = allocate(bound, &schedule, &lifetimes, &device).unwrap_or_else(|problems| panic!("{:?}", problems.first()));
     Ours { schedule, allocation }
@@ -103,15 +102,17 @@ fn resource(declared: &DeclaredResource) -> Resource {
 pub fn bound(declared: &Declared) -> Bound {
     let resources: Vec<Resource> = declared.resources.iter().map(resource).collect();
     let ids: HashMap<&str, u32> = resources.iter().enumerate().map(|(index, resource)| (resource.name.as_str(), index as u32)).collect();
-    let mut latest: HashMap<u32, PassId> = HashMap::new();
-    let (mut passes, mut steps) = (Vec::new(), Vec::new());
+    let mut latest: Vec<Option<PassId>> = vec![None; resources.len()];
+    let mut passes = Vec::with_capacity(declared.passes.len());
+    let mut steps = Vec::with_capacity(declared.passes.len());
     for (index, entry) in declared.passes.iter().enumerate() {
         let pass = PassId(index as u32);
-        let mut uses = Vec::new();
+        let mut uses = Vec::with_capacity(entry.reads.len() + entry.writes.len() + entry.modifies.len());
         for (names, role) in [(&entry.reads, Role::Read), (&entry.writes, Role::Produce), (&entry.modifies, Role::Modify)] {
             for name in names {
                 let id = ids[name.as_str()];
-                let version = if role == Role::Read { latest.get(&id).copied() } else { latest.insert(id, pass).and(None) };
+                let latest = &mut latest[id as usize];
+                let version = if role == Role::Read { *latest } else { latest.replace(pass).and(None) };
                 let (mips, access) = match (&resources[id as usize].shape, role) {
                     (Shape::Texture(shape), Role::Read) => (shape.mips, Access::Sampled),
                     (Shape::Texture(shape), _) => (shape.mips, Access::StorageWrite),
@@ -132,9 +133,8 @@ pub fn bound(declared: &Declared) -> Bound {
                 });
             }
         }
-        let name = entry.name.clone();
         passes.push(Pass {
-            name: name.clone(),
+            name: entry.name.clone(),
             span: Span::NOWHERE,
             indices: Vec::new(),
             kind: PassKind::Copy,
@@ -151,7 +151,7 @@ pub fn bound(declared: &Declared) -> Bound {
         let kind = StepKind::Compute { entry: String::new(), groups: Workgroups::Fixed([1, 1, 1]) };
         steps.push(Step {
             pass,
-            name,
+            name: entry.name.clone(),
             span: Span::NOWHERE,
             shader: None,
             kind,

@@ -7,7 +7,8 @@ use crate::bind::types::Bound;
 use crate::expand::types::{ResourceId, Shape, TextureShape};
 use crate::format::Format;
 use crate::lifetime::Touches;
-use crate::plan::{Access, Retained, Step};
+use crate::plan::{Access, Retained};
+use crate::schedule::{Touch, Uses};
 
 /// Everything of a texture's descriptor but usage and name: equal keys can share.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
@@ -62,7 +63,7 @@ pub struct Model {
 
 impl Model {
     /// Reads a pipeline. `alive` tells for each pass whether it runs.
-    pub(crate) fn new(bound: &Bound, retained: &[Option<Retained>], alive: impl Fn(usize) -> bool) -> Model {
+    pub(crate) fn new(bound: &Bound, uses: &Uses, retained: &[Option<Retained>], alive: &[bool]) -> Model {
         // Looked up and never walked, so its order does not matter.
         let mut known: HashMap<Descriptor, u32> = HashMap::new();
         let mut descriptors = Vec::new();
@@ -80,8 +81,8 @@ impl Model {
             });
         }
         let mut conflicts = BTreeMap::new();
-        for (_, step) in bound.steps.iter().enumerate().filter(|(index, _)| alive(*index)) {
-            enter_conflicts(step, &pools, &mut conflicts);
+        for pass in (0..bound.steps.len()).filter(|pass| alive[*pass]) {
+            enter_conflicts(uses.of_pass(pass), &pools, &mut conflicts);
         }
         for others in conflicts.values_mut() {
             others.sort_unstable();
@@ -93,7 +94,7 @@ impl Model {
             retained: retained.iter().map(Option::is_some).collect(),
             descriptors,
             conflicts,
-            touches: Touches::new(bound),
+            touches: Touches::new(bound, uses),
         }
     }
 
@@ -130,10 +131,10 @@ impl Tracked {
     }
 }
 
-fn enter_conflicts(step: &Step, pools: &[Pool], conflicts: &mut BTreeMap<u32, Vec<u32>>) {
+fn enter_conflicts(uses: &[Touch], pools: &[Pool], conflicts: &mut BTreeMap<u32, Vec<u32>>) {
     let is_buffer = |resource: ResourceId| pools.get(resource.index()) == Some(&Pool::Buffer);
     let buffers: Vec<(Tracked, u32)> =
-        step.uses.iter().filter(|used| is_buffer(used.resource)).map(|used| (Tracked::of(used.access), used.resource.0)).collect();
+        uses.iter().filter(|used| is_buffer(used.resource)).map(|used| (Tracked::of(used.access), used.resource.0)).collect();
     for (tracked, buffer) in &buffers {
         for (other_tracked, other) in &buffers {
             if tracked != other_tracked && buffer != other {
