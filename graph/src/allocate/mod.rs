@@ -21,7 +21,7 @@ use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, StepKind, Usage};
 use crate::schedule::Schedule;
 use crate::schedule::flow::Flow;
-use extent::{format_of, resource_bytes};
+use extent::format_of;
 use model::{Model, Pool};
 
 /// Where everything lives. All lists but `memories` are by resource id.
@@ -44,7 +44,7 @@ pub struct Allocation {
 /// Assigns memory to every resource that a scheduled pass uses. Fails, with all reasons, where a limit or the budget is exceeded.
 pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, device: &DeviceFacts) -> Result<Allocation, Vec<Diagnostic>> {
     let usages = usages(bound, schedule);
-    let problems = limits::resources(bound, lifetimes, &usages, device);
+    let problems = limits::resources(bound, &schedule.model, lifetimes, &usages, device);
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -74,18 +74,14 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
     };
     let mut memories: Vec<Memory> = Vec::new();
     let mut placements: Vec<Option<Placement>> = vec![None; resources.len()];
-    for slot in textures::assign(model, ranges, &usages) {
-        let Some(first) = slot.holders.first().map(|resource| *resource as usize) else { continue };
+    let timeline = textures::Timeline::new(model, ranges);
+    for textures::Slot { usage, holders } in textures::assign(model, &timeline, &usages) {
+        let Some(first) = holders.first().map(|resource| resource.index()) else { continue };
         let memory = MemoryId(memories.len() as u32);
-        for holder in &slot.holders {
-            placements[*holder as usize] = Some(Placement { memory, offset: 0 });
+        for holder in &holders {
+            placements[holder.index()] = Some(Placement { memory, offset: 0 });
         }
-        memories.push(Memory {
-            kind: texture_kind(first),
-            usage: slot.usage,
-            bytes: model.charged[first],
-            holders: slot.holders.iter().map(|resource| ResourceId(*resource)).collect(),
-        });
+        memories.push(Memory { kind: texture_kind(first), usage, bytes: model.charged[first], holders });
     }
     let buffers = (0..resources.len())
         .filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty());
@@ -115,11 +111,9 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
         declared_bound: schedule.flow.peak(&schedule.flow.declared, &schedule.flow.bytes),
         retained: sum(&memories[transient_memories..]),
     };
-    let alone = refusals::refusals(model, lifetimes, &memories, &placements);
-    let bytes = resources.iter().enumerate().map(|(index, resource)| {
-        // Resources in use were checked; others only show their size.
-        resource_bytes(resource, format_of(bound, ResourceId(index as u32))).unwrap_or(u64::MAX)
-    });
+    let alone = refusals::refusals(model, lifetimes, &timeline, &memories, &placements);
+    // Resources in use were checked; others only show their size.
+    let bytes = model.tight.iter().map(|bytes| bytes.unwrap_or(u64::MAX));
     Allocation { memories, placements, bytes: bytes.collect(), usages, alone, figures }
 }
 
@@ -132,7 +126,8 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
         }
     };
     let clear = |part: &PartView| clear_usage(bound, part.resource);
-    for pass in &schedule.order {
+    // In the order of the file, in which steps lie in memory.
+    for pass in &schedule.declared {
         let step = &bound.steps[pass.index()];
         for used in &step.uses {
             add(used.resource, used.access.usage());

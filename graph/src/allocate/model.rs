@@ -2,7 +2,7 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::extent::{charged_bytes, format_of};
+use super::extent::{charged_bytes, format_of, resource_bytes};
 use crate::bind::types::Bound;
 use crate::expand::types::{ResourceId, Shape, TextureShape};
 use crate::format::Format;
@@ -10,28 +10,15 @@ use crate::lifetime::Touches;
 use crate::plan::{Access, Retained};
 use crate::schedule::{Touch, Uses};
 
-/// Everything of a texture's descriptor but usage and name: equal keys can share.
+/// Everything of a texture's descriptor but usage and name: equal keys can share. One list of numbers, which is hashed fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Descriptor {
-    dimension: crate::expand::types::Dimension,
-    format: Format,
-    extent: [u32; 3],
-    layers: u32,
-    mips: u32,
-    samples: u32,
-}
+pub(crate) struct Descriptor([u32; 8]);
 
 impl Descriptor {
     /// The descriptor of a texture.
     pub(crate) fn of(shape: &TextureShape, format: Format) -> Descriptor {
-        Descriptor {
-            dimension: shape.dimension,
-            format,
-            extent: [shape.width, shape.height, shape.depth],
-            layers: shape.layers,
-            mips: shape.mips,
-            samples: shape.samples,
-        }
+        let TextureShape { dimension, width, height, depth, layers, mips, samples, .. } = *shape;
+        Descriptor([dimension as u32, format.number(), width, height, depth, layers, mips, samples])
     }
 }
 
@@ -49,7 +36,9 @@ pub(crate) enum Pool {
 pub struct Model {
     /// By resource.
     pub(crate) pools: Vec<Pool>,
-    /// By resource; saturated where they do not fit.
+    /// By resource: tight bytes, if 64 bits can count them.
+    pub(crate) tight: Vec<Option<u64>>,
+    /// By resource: what it is charged for; saturated where it does not fit.
     pub(crate) charged: Vec<u64>,
     /// By resource.
     pub(crate) retained: Vec<bool>,
@@ -67,10 +56,13 @@ impl Model {
         // Looked up and never walked, so its order does not matter.
         let mut known: HashMap<Descriptor, u32> = HashMap::new();
         let mut descriptors = Vec::new();
-        let (mut pools, mut charged) = (Vec::new(), Vec::new());
+        let count = bound.expanded.resources.len();
+        let (mut pools, mut tight, mut charged) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
         for (index, resource) in bound.expanded.resources.iter().enumerate() {
             let format = format_of(bound, ResourceId(index as u32));
-            let bytes = charged_bytes(resource, format).unwrap_or(u64::MAX);
+            let own = resource_bytes(resource, format);
+            let bytes = own.and_then(|own| charged_bytes(resource, own)).unwrap_or(u64::MAX);
+            tight.push(own);
             charged.push(bytes);
             pools.push(match (&resource.shape, format) {
                 (Shape::Texture(shape), Some(format)) => Pool::Texture(*known.entry(Descriptor::of(shape, format)).or_insert_with(|| {
@@ -90,6 +82,7 @@ impl Model {
         }
         Model {
             pools,
+            tight,
             charged,
             retained: retained.iter().map(Option::is_some).collect(),
             descriptors,

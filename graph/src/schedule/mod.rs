@@ -27,7 +27,6 @@ use crate::bind::types::Bound;
 use crate::diagnostic::Diagnostic;
 use crate::expand::types::{ClearValue, PassId, ResourceId};
 use crate::plan::{Culled, PartView, Retained};
-use crate::source::Span;
 use dag::Dag;
 use flow::Flow;
 use versions::Versions;
@@ -52,8 +51,8 @@ pub struct Unread {
     pub resource: ResourceId,
     /// The first pass that writes it.
     pub writer: PassId,
-    /// Where it does.
-    pub span: Span,
+    /// The use that does, by its place in the step.
+    pub place: usize,
 }
 
 /// What runs, in order, and what does not.

@@ -9,7 +9,7 @@ use super::versions::{Grid, Region, Versions, only_tests, writes};
 use crate::bind::types::Bound;
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::expand::types::{Output, PassId, Resource, ResourceId};
-use crate::plan::{Access, Role, Step, Use};
+use crate::plan::{Access, Role, Step};
 
 /// All errors but cycles, by resource and then by pass.
 pub(crate) fn problems(bound: &Bound, uses: &Uses, versions: &Versions) -> Vec<Diagnostic> {
@@ -269,8 +269,7 @@ pub(crate) fn unread(bound: &Bound, uses: &Uses, versions: &Versions) -> Vec<Unr
         // A depth buffer that is only tested against does its work without a reader.
         let works = |id| !matches!(uses.get(id).access, Access::DepthAttachment | Access::DepthReadOnly);
         if let Some(writer) = grid.all_writers().next().filter(|_| grid.all_writers().any(works)) {
-            let Use { span, .. } = uses.in_step(bound, writer);
-            found.push(Unread { resource: ResourceId(index as u32), writer: uses.get(writer).pass, span: *span });
+            found.push(Unread { resource: ResourceId(index as u32), writer: uses.get(writer).pass, place: uses.place_in_step(writer) });
         }
     }
     found
@@ -280,9 +279,10 @@ impl Unread {
     /// As a warning.
     pub(crate) fn diagnostic(&self, bound: &Bound) -> Diagnostic {
         let resource = &bound.expanded.resources[self.resource.index()];
+        let writer = step(bound, self.writer);
         Diagnostic::warning("schedule::unread-resource", format!("nothing reads `{}`, and it is no output", resource.name))
             .at(resource.span, "declared here")
-            .and(self.span, format!("written by `{}`", step(bound, self.writer).name))
+            .and(writer.uses[self.place].span, format!("written by `{}`", writer.name))
             .hint("read it, name it under `outputs`, or take it away")
     }
 }

@@ -64,8 +64,12 @@ impl Uses {
 
     /// The use with all that its step says of it. The table was made from the same `bound`.
     pub(crate) fn in_step<'a>(&self, bound: &'a Bound, id: UseId) -> &'a Use {
-        let pass = self.get(id).pass.index();
-        &bound.steps[pass].uses[(id.0 - self.starts[pass]) as usize]
+        &bound.steps[self.get(id).pass.index()].uses[self.place_in_step(id)]
+    }
+
+    /// A use's place in the list of its step.
+    pub(crate) fn place_in_step(&self, id: UseId) -> usize {
+        (id.0 - self.starts[self.get(id).pass.index()]) as usize
     }
 
     /// The uses of a pass.
