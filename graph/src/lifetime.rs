@@ -23,8 +23,8 @@ pub struct Lifetimes {
 pub fn lifetimes(bound: &Bound, schedule: &Schedule, retained: Vec<Option<Retained>>) -> Lifetimes {
     let mut ranges = schedule.model.touches.ranges(&schedule.order);
     // An output that nothing writes is cleared by a step that does not name it.
-    let mut places = vec![None; bound.steps.len()];
-    for (place, pass) in schedule.order.iter().enumerate() {
+    let mut places = vec![None; if schedule.initial_clears.is_empty() { 0 } else { bound.steps.len() }];
+    for (place, pass) in schedule.order.iter().enumerate().take(places.len()) {
         places[pass.index()] = Some(place);
     }
     for InitialClear { pass, part, .. } in &schedule.initial_clears {

@@ -122,9 +122,14 @@ pub(crate) struct Stretch {
 impl Stretch {
     /// Adds a list at the end of the long one.
     pub(crate) fn append<T>(long: &mut Vec<T>, entries: impl Iterator<Item = T>) -> Stretch {
-        let start = long.len() as u32;
+        let start = long.len();
         long.extend(entries);
-        Stretch { start, end: long.len() as u32 }
+        Stretch::since(long, start)
+    }
+
+    /// What was added to the long one since it had so many entries.
+    pub(crate) fn since<T>(long: &[T], start: usize) -> Stretch {
+        Stretch { start: start as u32, end: long.len() as u32 }
     }
 
     /// The same in ascending order and without repetition.

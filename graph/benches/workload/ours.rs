@@ -70,18 +70,22 @@ impl Ours {
     }
 }
 
-fn resource(declared: &DeclaredResource) -> Resource {
-    let format = match declared.format.as_str() {
-        "r8" => "r8unorm",
-        "r16f" => "r16float",
-        "rgba8" => "rgba8unorm",
-        "rg16f" => "rg16float",
-        "d32" => "depth32float",
-        "rg11b10" => "rg11b10ufloat",
-        "rgba16f" => "rgba16float",
-        other => other,
-    };
-    let shape = match Format::from_name(format) {
+/// Formats by the names that they have in the files; all else is a buffer.
+fn formats() -> [(&'static str, Format); 7] {
+    [
+        ("r8", "r8unorm"),
+        ("r16f", "r16float"),
+        ("rgba8", "rgba8unorm"),
+        ("rg16f", "rg16float"),
+        ("d32", "depth32float"),
+        ("rg11b10", "rg11b10ufloat"),
+        ("rgba16f", "rgba16float"),
+    ]
+    .map(|(name, format)| (name, Format::from_name(format).unwrap()))
+}
+
+fn resource(declared: &DeclaredResource, formats: &[(&str, Format)]) -> Resource {
+    let shape = match formats.iter().find(|(name, _)| *name == declared.format).map(|(_, format)| *format) {
         None => Shape::Buffer { bytes: u64::from(declared.extent[0]) },
         Some(format) => Shape::Texture(TextureShape {
             dimension: if declared.extent[2] > 1 { Dimension::D3 } else { Dimension::D2 },
@@ -100,7 +104,8 @@ fn resource(declared: &DeclaredResource) -> Resource {
 
 /// What binding would make of it.
 pub fn bound(declared: &Declared) -> Bound {
-    let resources: Vec<Resource> = declared.resources.iter().map(resource).collect();
+    let formats = formats();
+    let resources: Vec<Resource> = declared.resources.iter().map(|declared| resource(declared, &formats)).collect();
     let ids: HashMap<&str, u32> = resources.iter().enumerate().map(|(index, resource)| (resource.name.as_str(), index as u32)).collect();
     let mut latest: Vec<Option<PassId>> = vec![None; resources.len()];
     let mut passes = Vec::with_capacity(declared.passes.len());

@@ -45,22 +45,23 @@ fn descriptor(model: &Model, resource: u32) -> usize {
 
 /// Bytes of the textures that an order needs: the peak of each descriptor times its size.
 pub(crate) fn bytes_reached(flow: &Flow, model: &Model, order: &[u32], ranges: &[Range<usize>]) -> u64 {
-    let mut live = vec![0u32; model.descriptors.len()];
-    let mut peaks = vec![0u32; model.descriptors.len()];
+    let mut live = vec![(0u32, 0u32); model.descriptors.len()];
     for (step, node) in order.iter().enumerate() {
-        let textures = flow.touches.of(*node as usize).iter().filter_map(|item| match flow.pools[*item as usize] {
-            Pool::Texture(descriptor) => Some((&ranges[*item as usize], descriptor as usize)),
-            Pool::Buffer => None,
-        });
-        for (_, descriptor) in textures.clone().filter(|(range, _)| range.start == step) {
-            live[descriptor] += 1;
-            peaks[descriptor] = peaks[descriptor].max(live[descriptor]);
+        let touched = flow.touches.of(*node as usize).iter().map(|item| (&ranges[*item as usize], flow.pools[*item as usize]));
+        for (range, pool) in touched.clone() {
+            if let (true, Pool::Texture(descriptor)) = (range.start == step, pool) {
+                let (now, peak) = &mut live[descriptor as usize];
+                *now += 1;
+                *peak = (*peak).max(*now);
+            }
         }
-        for (_, descriptor) in textures.filter(|(range, _)| range.end == step + 1) {
-            live[descriptor] -= 1;
+        for (range, pool) in touched {
+            if let (true, Pool::Texture(descriptor)) = (range.end == step + 1, pool) {
+                live[descriptor as usize].0 -= 1;
+            }
         }
     }
-    peaks.iter().zip(&model.descriptors).fold(0, |sum, (peak, bytes)| sum.saturating_add(bytes.saturating_mul(u64::from(*peak))))
+    live.iter().zip(&model.descriptors).fold(0, |sum, ((_, peak), bytes)| sum.saturating_add(bytes.saturating_mul(u64::from(*peak))))
 }
 
 /// For each descriptor the largest number of its textures in use at once, and the first step at which they are.

@@ -11,6 +11,9 @@ use crate::expand::types::{PassId, ResourceId};
 
 /// All implicit clears, by the place of their step in the order, then by resource and part.
 pub(crate) fn initial_clears(bound: &Bound, uses: &Uses, versions: &Versions, order: &[PassId]) -> Vec<InitialClear> {
+    if bound.expanded.resources.iter().all(|resource| resource.clear.is_none()) {
+        return Vec::new();
+    }
     let mut places: Vec<Option<usize>> = vec![None; bound.steps.len()];
     for (place, pass) in order.iter().enumerate() {
         places[pass.index()] = Some(place);

@@ -50,7 +50,8 @@ impl Flow {
             }
         }
         let number = |node: u32| Some(numbers[node as usize]).filter(|number| *number != u32::MAX);
-        let before = Lists::from_pairs(nodes as usize, dag.edges().filter_map(|(from, to)| Some((number(to)?, number(from)?))));
+        let edges: Vec<(u32, u32)> = dag.edges().filter_map(|(from, to)| Some((number(to)?, number(from)?))).collect();
+        let before = Lists::from_pairs(nodes as usize, edges.iter().copied());
         // Turned around once, lists are ascending, and what comes twice lies side by side.
         let mut after = before.inverted(nodes as usize);
         after.dedup();

@@ -81,11 +81,8 @@ impl Context<'_> {
         let Context { bound, uses, grid, resource, found } = self;
         let at = |id: &UseId| uses.in_step(bound, *id);
         let of = |id: &UseId| step(bound, uses.get(*id).pass);
-        if resource.clear.is_some() {
-            return;
-        }
         let mut by_writer: BTreeMap<UseId, Vec<Rect>> = BTreeMap::new();
-        for cell in grid.cells.iter().filter(|cell| !cell.produced) {
+        for cell in grid.cells.iter().filter(|cell| !cell.produced && resource.clear.is_none()) {
             if let Some(first) = grid.writers(cell).first() {
                 by_writer.entry(*first).or_default().push(cell.rect.clone());
             }

@@ -33,7 +33,7 @@ pub(crate) struct Region {
     pub(crate) version: Option<PassId>,
     readers: Stretch,
     outputs: Stretch,
-    writers: Stretch,
+    makers: Stretch,
     destroyers: Stretch,
     unwritten: Stretch,
     foreign: Stretch,
@@ -61,7 +61,7 @@ pub(crate) struct Versions {
     none: Exceptions,
     /// Writers of cells and readers of regions.
     uses: Vec<UseId>,
-    /// Writers and destroyers of regions.
+    /// Makers and destroyers of regions.
     passes: Vec<PassId>,
     /// Outputs, and cells of regions.
     indices: Vec<u32>,
@@ -99,7 +99,7 @@ impl<'a> Grid<'a> {
 
     /// The passes that left the value which is read, without repetition.
     pub(crate) fn makers(&self, region: &Region) -> &'a [PassId] {
-        region.writers.of(&self.all.passes)
+        region.makers.of(&self.all.passes)
     }
 
     /// The modifiers that destroy the value, without repetition.
@@ -151,7 +151,8 @@ impl Versions {
             passes: Vec::with_capacity(count),
             indices: Vec::new(),
         };
-        let mut builder = Builder { bound, uses, versions, mips: Vec::new(), layers: Vec::new(), chains: Vec::new(), reads: Vec::new() };
+        let (mips, layers, chains, reads, makers, destroyers, foreign) = Default::default();
+        let mut builder = Builder { bound, uses, versions, mips, layers, chains, reads, makers, destroyers, foreign };
         for resource in 0..count {
             builder.resource(ResourceId(resource as u32), outputs.of(resource));
         }
@@ -197,6 +198,10 @@ struct Builder<'a> {
     chains: Vec<Vec<UseId>>,
     /// Readers of the resource, each after its region.
     reads: Vec<(u32, UseId)>,
+    /// Of a region, see there.
+    makers: Vec<PassId>,
+    destroyers: Vec<PassId>,
+    foreign: Vec<u32>,
 }
 
 impl Builder<'_> {
@@ -241,7 +246,9 @@ impl Builder<'_> {
         for (output, rect, version) in shown {
             shows.push((region(&mut self.versions.regions, first_region, &mut known, &rect, version), output));
         }
-        self.reads.sort_unstable();
+        if readers_end > first_region + 1 {
+            self.reads.sort_unstable();
+        }
         let mut reads = &self.reads[..];
         for (number, region) in (0u32..).zip(&mut self.versions.regions[first_region..readers_end]) {
             let (own, others) = reads.split_at(reads.partition_point(|(region, _)| *region == number));
@@ -276,29 +283,30 @@ impl Builder<'_> {
 
     /// Finds out what a region shows, and what destroys it.
     fn resolve(&mut self, first_cell: usize, number: usize) {
-        let Builder { uses, versions, mips, layers, chains, .. } = self;
+        let Builder { uses, versions, mips, layers, chains, makers, destroyers, foreign, .. } = self;
         let Versions { regions, passes, indices, cells, .. } = versions;
         let region = &mut regions[number];
-        let version = region.version;
-        // For each of its cells: the chain, and the place in it whose value is seen.
-        let seen = |index: usize| {
+        let unwritten = indices.len();
+        for index in cells_in(mips, layers, &region.rect).filter(|index| first_cell + index < cells.len()) {
             let chain = &chains[index];
-            let place = match version {
+            // The place in the chain whose value is seen.
+            let seen = match region.version {
                 None => chain.len().checked_sub(1),
                 Some(version) => chain.iter().position(|writer| uses.get(*writer).pass == version),
             };
-            (chain, place)
-        };
-        let of = |writer: Option<&UseId>| writer.map(|writer| uses.get(*writer).pass);
-        let covered = || cells_in(mips, layers, &region.rect).filter(|index| first_cell + index < cells.len());
-        let makers = covered().filter_map(|index| of(seen(index).0.get(seen(index).1?)));
-        region.writers = Stretch::append_set(passes, makers);
-        let destroyers = covered().filter_map(|index| of(seen(index).0.get(seen(index).1? + 1)));
-        region.destroyers = Stretch::append_set(passes, destroyers);
-        let nothing = |index: &usize| seen(*index).0.is_empty() && version.is_none();
-        let unseen = || covered().filter(|index| seen(*index).1.is_none());
-        region.unwritten = Stretch::append(indices, unseen().filter(nothing).map(|index| index as u32));
-        region.foreign = Stretch::append(indices, unseen().filter(|index| !nothing(index)).map(|index| index as u32));
+            match seen {
+                Some(place) => {
+                    makers.push(uses.get(chain[place]).pass);
+                    destroyers.extend(chain.get(place + 1).map(|next| uses.get(*next).pass));
+                }
+                None if chain.is_empty() && region.version.is_none() => indices.push(index as u32),
+                None => foreign.push(index as u32),
+            }
+        }
+        region.unwritten = Stretch::since(indices, unwritten);
+        region.foreign = Stretch::append(indices, foreign.drain(..));
+        region.makers = Stretch::append_set(passes, makers.drain(..));
+        region.destroyers = Stretch::append_set(passes, destroyers.drain(..));
     }
 }
 
@@ -317,8 +325,8 @@ fn region(
     let next = own.len() as u32;
     let number = if own.len() < FEW { next } else { *known.entry((rect.clone(), version)).or_insert(next) };
     if number == next {
-        let (readers, outputs, writers, destroyers, unwritten, foreign) = Default::default();
-        regions.push(Region { rect: rect.clone(), version, readers, outputs, writers, destroyers, unwritten, foreign });
+        let (readers, outputs, makers, destroyers, unwritten, foreign) = Default::default();
+        regions.push(Region { rect: rect.clone(), version, readers, outputs, makers, destroyers, unwritten, foreign });
     }
     number
 }
