@@ -134,31 +134,31 @@ struct Union {
 impl Union {
     /// Adds ranges that ascend by first byte.
     fn add(&mut self, others: impl Iterator<Item = (u64, u64)>) {
-        let mut others = others.peekable();
-        if others.peek().is_none() {
+        let Union { ranges, spare } = self;
+        spare.clear();
+        let mut own = 0;
+        for other in others {
+            while let Some(range) = ranges.get(own).filter(|range| range.0 <= other.0) {
+                append(spare, *range);
+                own += 1;
+            }
+            append(spare, other);
+        }
+        if spare.is_empty() {
             return;
         }
-        self.spare.clear();
-        let mut last: Option<(u64, u64)> = None;
-        let mut own = self.ranges.iter().copied().peekable();
-        loop {
-            let next = match (own.peek(), others.peek()) {
-                (Some(one), Some(other)) if one.0 <= other.0 => own.next(),
-                (Some(_), None) => own.next(),
-                _ => others.next(),
-            };
-            last = match (last, next) {
-                (Some(last), Some(next)) if next.0 <= last.1 => Some((last.0, last.1.max(next.1))),
-                (last, next) => {
-                    self.spare.extend(last);
-                    if next.is_none() {
-                        break;
-                    }
-                    next
-                }
-            };
+        for range in &ranges[own..] {
+            append(spare, *range);
         }
-        std::mem::swap(&mut self.ranges, &mut self.spare);
+        std::mem::swap(ranges, spare);
+    }
+}
+
+/// Adds a range to disjoint ones, none of which begins after it.
+fn append(ranges: &mut Vec<(u64, u64)>, range: (u64, u64)) {
+    match ranges.last_mut() {
+        Some(last) if range.0 <= last.1 => last.1 = last.1.max(range.1),
+        _ => ranges.push(range),
     }
 }
 

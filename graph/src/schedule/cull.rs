@@ -74,5 +74,8 @@ fn users(dag: &Dag, alive: &[bool]) -> Lists {
             pairs.extend(behind.iter().filter(|source| !alive[**source as usize]).map(|source| (*source, user)));
         }
     }
-    Lists::sets(dag.passes, pairs)
+    // Users come in ascending order.
+    let mut users = Lists::from_pairs(dag.passes, pairs.iter().copied());
+    users.dedup();
+    users
 }
