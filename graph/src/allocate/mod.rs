@@ -20,9 +20,8 @@ use crate::expand::types::{Dimension, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, StepKind, Usage};
 use crate::schedule::Schedule;
-use crate::schedule::flow::Flow;
 use extent::format_of;
-use model::{Model, Pool};
+use model::Pool;
 
 /// Where everything lives. All lists but `memories` are by resource id.
 #[derive(Debug, Clone, PartialEq)]
@@ -53,15 +52,6 @@ pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, devic
         Some(problem) => Err(vec![problem]),
         None => Ok(allocation),
     }
-}
-
-/// Bytes that the executor would allocate for transients in an order.
-pub(crate) fn bytes_reached(flow: &Flow, model: &Model, order: &[u32]) -> u64 {
-    let ranges = flow.ranges(order);
-    let buffers = flow.pools.iter().enumerate().filter(|(_, pool)| **pool == Pool::Buffer);
-    let buffers = buffers.map(|(item, _)| (flow.resources[item].0, ranges[item].clone()));
-    let arenas = arenas::pack(model, buffers, arenas::ARENA_LIMIT);
-    arenas.iter().fold(textures::bytes_reached(flow, model, order, &ranges), |sum, arena| sum.saturating_add(arena.bytes()))
 }
 
 fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
@@ -119,7 +109,7 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
 
 /// What the steps that run do to each resource, clears and the reading of outputs by the host included.
 fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
-    let mut usages = vec![Usage::default(); bound.expanded.resources.len()];
+    let mut usages = schedule.model.usages.clone();
     let mut add = |resource: ResourceId, usage: Usage| {
         if let Some(entry) = usages.get_mut(resource.index()) {
             *entry = entry.union(usage);
@@ -129,15 +119,11 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
     // In the order of the file, in which steps lie in memory.
     for pass in &schedule.declared {
         let step = &bound.steps[pass.index()];
-        for used in &step.uses {
-            add(used.resource, used.access.usage());
-            if used.access == crate::plan::Access::Clear {
-                add(used.resource, clear_usage(bound, used.resource));
-            }
-        }
-        // Its first value.
-        if let StepKind::Remember { target, .. } = &step.kind {
-            add(target.resource, clear(target));
+        match &step.kind {
+            StepKind::Clear { target, .. } => add(target.resource, clear(target)),
+            // Its first value.
+            StepKind::Remember { target, .. } => add(target.resource, clear(target)),
+            _ => {}
         }
         for (part, _) in &step.clears {
             add(part.resource, clear(part));

@@ -7,7 +7,7 @@ use crate::bind::types::Bound;
 use crate::expand::types::{ResourceId, Shape, TextureShape};
 use crate::format::Format;
 use crate::lifetime::Touches;
-use crate::plan::{Access, Retained};
+use crate::plan::{Access, Retained, Usage};
 use crate::schedule::{Touch, Uses};
 
 /// Everything of a texture's descriptor but usage and name: equal keys can share. One list of numbers, which is hashed fast.
@@ -42,6 +42,8 @@ pub struct Model {
     pub(crate) charged: Vec<u64>,
     /// By resource.
     pub(crate) retained: Vec<bool>,
+    /// By resource: what the uses of passes that run do to it.
+    pub(crate) usages: Vec<Usage>,
     /// By descriptor: bytes of a texture.
     pub(crate) descriptors: Vec<u64>,
     /// For each buffer the buffers that it must not share an arena with, by id.
@@ -73,8 +75,14 @@ impl Model {
             });
         }
         let mut conflicts = BTreeMap::new();
+        let mut usages = vec![Usage::default(); count];
         for pass in (0..bound.steps.len()).filter(|pass| alive[*pass]) {
             enter_conflicts(uses.of_pass(pass), &pools, &mut conflicts);
+            for touch in uses.of_pass(pass) {
+                if let Some(usage) = usages.get_mut(touch.resource.index()) {
+                    *usage = usage.union(touch.access.usage());
+                }
+            }
         }
         for others in conflicts.values_mut() {
             others.sort_unstable();
@@ -85,6 +93,7 @@ impl Model {
             tight,
             charged,
             retained: retained.iter().map(Option::is_some).collect(),
+            usages,
             descriptors,
             conflicts,
             touches: Touches::new(bound, uses),
