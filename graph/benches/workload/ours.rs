@@ -107,6 +107,11 @@ pub fn bound(declared: &Declared) -> Bound {
     let formats = formats();
     let resources: Vec<Resource> = declared.resources.iter().map(|declared| resource(declared, &formats)).collect();
     let ids: HashMap<&str, u32> = resources.iter().enumerate().map(|(index, resource)| (resource.name.as_str(), index as u32)).collect();
+    let extent = |resource: &Resource| match &resource.shape {
+        Shape::Texture(shape) => (true, shape.mips, shape.layers),
+        Shape::Buffer { .. } => (false, 1, 1),
+    };
+    let extents: Vec<(bool, u32, u32)> = resources.iter().map(extent).collect();
     let mut latest: Vec<Option<PassId>> = vec![None; resources.len()];
     let mut passes = Vec::with_capacity(declared.passes.len());
     let mut steps = Vec::with_capacity(declared.passes.len());
@@ -118,13 +123,13 @@ pub fn bound(declared: &Declared) -> Bound {
                 let id = ids[name.as_str()];
                 let latest = &mut latest[id as usize];
                 let version = if role == Role::Read { *latest } else { latest.replace(pass).and(None) };
-                let (mips, access) = match (&resources[id as usize].shape, role) {
-                    (Shape::Texture(shape), Role::Read) => (shape.mips, Access::Sampled),
-                    (Shape::Texture(shape), _) => (shape.mips, Access::StorageWrite),
-                    (Shape::Buffer { .. }, Role::Read) => (1, Access::StorageRead),
-                    (Shape::Buffer { .. }, _) => (1, Access::StorageReadWrite),
+                let (is_texture, mips, layers) = extents[id as usize];
+                let access = match (is_texture, role) {
+                    (true, Role::Read) => Access::Sampled,
+                    (true, _) => Access::StorageWrite,
+                    (false, Role::Read) => Access::StorageRead,
+                    (false, _) => Access::StorageReadWrite,
                 };
-                let layers = if let Shape::Texture(shape) = &resources[id as usize].shape { shape.layers } else { 1 };
                 let slot = String::new();
                 uses.push(Use {
                     resource: ResourceId(id),

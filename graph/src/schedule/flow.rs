@@ -58,7 +58,8 @@ impl Flow {
         let before = after.inverted(nodes as usize);
 
         let mut items = vec![u32::MAX; model.touches.resource_count()];
-        let (mut resources, mut pools, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+        let most = items.len();
+        let (mut resources, mut pools, mut bytes) = (Vec::with_capacity(most), Vec::with_capacity(most), Vec::with_capacity(most));
         let mut touches = Lists::with_capacity(nodes as usize, 4 * passes.len());
         for pass in &passes {
             for resource in model.touches.of(*pass).iter().filter(|resource| model.is_transient(**resource as usize)) {
