@@ -7,7 +7,7 @@ use crate::allocate::allocate;
 use crate::assemble::assemble;
 use crate::bind::{BindInput, bind};
 use crate::device::DeviceFacts;
-use crate::diagnostic::{Diagnostic, has_errors};
+use crate::diagnostic::Diagnostic;
 use crate::dirty::retention;
 use crate::expand::{ExpandInput, expand};
 use crate::lifetime::lifetimes;
@@ -73,9 +73,8 @@ fn steps(input: &CompileInput<'_>, sources: &mut SourceMap, warnings: &mut Vec<D
     let bind_input = BindInput { files: input.files, published: input.published, device: input.device, output: input.output };
     let bound = bind(expanded, &bind_input, sources)?;
     let retention = retention(&bound);
-    let (scheduled, problems) = schedule(&bound, &retention.retained);
-    let Some(schedule) = scheduled.filter(|_| !has_errors(&problems)) else { return Err(problems) };
-    warnings.extend(problems);
+    let schedule = schedule(&bound, &retention.retained)?;
+    warnings.extend(schedule.warnings(&bound));
     let lifetimes = lifetimes(&bound, &schedule, retention.retained);
     let allocation = allocate(&bound, &schedule, &lifetimes, input.device)?;
     Ok(assemble(bound, schedule, lifetimes, allocation, retention.for_inputs, input.pipeline, input.output))

@@ -159,6 +159,11 @@ impl Format {
         &FORMATS[self.0 as usize]
     }
 
+    /// Different for every format.
+    pub(crate) fn number(self) -> u32 {
+        u32::from(self.0)
+    }
+
     /// WebGPU's name.
     pub fn name(self) -> &'static str {
         self.info().name

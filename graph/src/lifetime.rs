@@ -8,7 +8,7 @@ use crate::bind::types::Bound;
 use crate::expand::types::PassId;
 use crate::lists::Lists;
 use crate::plan::Retained;
-use crate::schedule::{InitialClear, Schedule};
+use crate::schedule::{InitialClear, Schedule, Uses};
 
 /// When each resource is in use, by resource id.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -23,8 +23,8 @@ pub struct Lifetimes {
 pub fn lifetimes(bound: &Bound, schedule: &Schedule, retained: Vec<Option<Retained>>) -> Lifetimes {
     let mut ranges = schedule.model.touches.ranges(&schedule.order);
     // An output that nothing writes is cleared by a step that does not name it.
-    let mut places = vec![None; bound.steps.len()];
-    for (place, pass) in schedule.order.iter().enumerate() {
+    let mut places = vec![None; if schedule.initial_clears.is_empty() { 0 } else { bound.steps.len() }];
+    for (place, pass) in schedule.order.iter().enumerate().take(places.len()) {
         places[pass.index()] = Some(place);
     }
     for InitialClear { pass, part, .. } in &schedule.initial_clears {
@@ -47,13 +47,13 @@ pub(crate) struct Touches {
 
 impl Touches {
     /// Reads the uses of all steps.
-    pub(crate) fn new(bound: &Bound) -> Touches {
+    pub(crate) fn new(bound: &Bound, uses: &Uses) -> Touches {
         let resource_count = bound.expanded.resources.len();
         let mut resources = Lists::with_capacity(bound.steps.len(), 4 * bound.steps.len());
         let mut seen_by = vec![u32::MAX; resource_count];
         for (pass, step) in bound.steps.iter().enumerate() {
             let declared = step.clears.iter().map(|(part, _)| part.resource);
-            for resource in step.uses.iter().map(|used| used.resource).chain(declared) {
+            for resource in uses.of_pass(pass).iter().map(|used| used.resource).chain(declared) {
                 if let Some(seen) = seen_by.get_mut(resource.index())
                     && std::mem::replace(seen, pass as u32) != pass as u32
                 {

@@ -44,6 +44,13 @@ impl Lists {
         Lists { starts, entries }
     }
 
+    /// The same with every list in ascending order and without repetition.
+    pub(crate) fn sets(count: usize, mut pairs: Vec<(u32, u32)>) -> Lists {
+        pairs.sort_unstable();
+        pairs.dedup();
+        Lists::from_pairs(count, pairs.iter().copied())
+    }
+
     /// Adds an entry to the list that is being built.
     pub(crate) fn push(&mut self, entry: u32) {
         self.entries.push(entry);
@@ -66,7 +73,83 @@ impl Lists {
 
     /// For each of `count` entries the lists that have it, ascending.
     pub(crate) fn inverted(&self, count: usize) -> Lists {
-        let owners = |index: usize| self.of(index).iter().map(move |entry| (*entry, index as u32));
-        Lists::from_pairs(count, (0..self.count()).flat_map(owners))
+        let mut starts = vec![0u32; count + 1];
+        for entry in &self.entries {
+            starts[*entry as usize + 1] += 1;
+        }
+        for index in 0..count {
+            starts[index + 1] += starts[index];
+        }
+        let mut entries = vec![0u32; self.entries.len()];
+        let mut next = starts.clone();
+        for index in 0..self.count() {
+            for entry in self.of(index) {
+                let place = &mut next[*entry as usize];
+                entries[*place as usize] = index as u32;
+                *place += 1;
+            }
+        }
+        Lists { starts, entries }
+    }
+
+    /// Leaves neighbours that are equal away, as they are in ascending lists.
+    pub(crate) fn dedup(&mut self) {
+        let (mut kept, mut start) = (0, 0);
+        for index in 0..self.count() {
+            let end = self.starts[index + 1] as usize;
+            let first = kept;
+            for place in start..end {
+                let entry = self.entries[place];
+                if kept == first || self.entries[kept - 1] != entry {
+                    self.entries[kept] = entry;
+                    kept += 1;
+                }
+            }
+            start = end;
+            self.starts[index + 1] = kept as u32;
+        }
+        self.entries.truncate(kept);
+    }
+}
+
+/// A list inside of a longer one.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+pub(crate) struct Stretch {
+    start: u32,
+    end: u32,
+}
+
+impl Stretch {
+    /// Adds a list at the end of the long one.
+    pub(crate) fn append<T>(long: &mut Vec<T>, entries: impl Iterator<Item = T>) -> Stretch {
+        let start = long.len();
+        long.extend(entries);
+        Stretch::since(long, start)
+    }
+
+    /// What was added to the long one since it had so many entries.
+    pub(crate) fn since<T>(long: &[T], start: usize) -> Stretch {
+        Stretch { start: start as u32, end: long.len() as u32 }
+    }
+
+    /// The same in ascending order and without repetition.
+    pub(crate) fn append_set<T: Ord + Copy>(long: &mut Vec<T>, entries: impl Iterator<Item = T>) -> Stretch {
+        let Stretch { start, .. } = Stretch::append(long, entries);
+        let own = &mut long[start as usize..];
+        own.sort_unstable();
+        let mut kept = own.len().min(1);
+        for place in 1..own.len() {
+            if own[place] != own[kept - 1] {
+                own[kept] = own[place];
+                kept += 1;
+            }
+        }
+        long.truncate(start as usize + kept);
+        Stretch { start, end: long.len() as u32 }
+    }
+
+    /// The list, in the same long one.
+    pub(crate) fn of<T>(self, long: &[T]) -> &[T] {
+        &long[self.start as usize..self.end as usize]
     }
 }

@@ -33,8 +33,7 @@ pub fn plan(declared: &Declared) -> Ours {
 pub fn plan_of(bound: &Bound) -> Ours {
     let device = DeviceFacts { memory_budget: u64::MAX, ..DeviceFacts::webgpu_defaults() };
     let retained = outputs_alone(bound);
-    let (schedule, problems) = schedule(bound, &retained);
-    let schedule = schedule.unwrap_or_else(|| panic!("{:?}", problems.first()));
+    let schedule = schedule(bound, &retained).unwrap_or_else(|problems| panic!("{:?}", problems.first()));
     let lifetimes = lifetimes(bound, &schedule, retained);
     let allocation = allocate(bound, &schedule, &lifetimes, &device).unwrap_or_else(|problems| panic!("{:?}", problems.first()));
     Ours { schedule, allocation }
@@ -71,18 +70,22 @@ impl Ours {
     }
 }
 
-fn resource(declared: &DeclaredResource) -> Resource {
-    let format = match declared.format.as_str() {
-        "r8" => "r8unorm",
-        "r16f" => "r16float",
-        "rgba8" => "rgba8unorm",
-        "rg16f" => "rg16float",
-        "d32" => "depth32float",
-        "rg11b10" => "rg11b10ufloat",
-        "rgba16f" => "rgba16float",
-        other => other,
-    };
-    let shape = match Format::from_name(format) {
+/// Formats by the names that they have in the files; all else is a buffer.
+fn formats() -> [(&'static str, Format); 7] {
+    [
+        ("r8", "r8unorm"),
+        ("r16f", "r16float"),
+        ("rgba8", "rgba8unorm"),
+        ("rg16f", "rg16float"),
+        ("d32", "depth32float"),
+        ("rg11b10", "rg11b10ufloat"),
+        ("rgba16f", "rgba16float"),
+    ]
+    .map(|(name, format)| (name, Format::from_name(format).unwrap()))
+}
+
+fn resource(declared: &DeclaredResource, formats: &[(&str, Format)]) -> Resource {
+    let shape = match formats.iter().find(|(name, _)| *name == declared.format).map(|(_, format)| *format) {
         None => Shape::Buffer { bytes: u64::from(declared.extent[0]) },
         Some(format) => Shape::Texture(TextureShape {
             dimension: if declared.extent[2] > 1 { Dimension::D3 } else { Dimension::D2 },
@@ -101,24 +104,32 @@ fn resource(declared: &DeclaredResource) -> Resource {
 
 /// What binding would make of it.
 pub fn bound(declared: &Declared) -> Bound {
-    let resources: Vec<Resource> = declared.resources.iter().map(resource).collect();
+    let formats = formats();
+    let resources: Vec<Resource> = declared.resources.iter().map(|declared| resource(declared, &formats)).collect();
     let ids: HashMap<&str, u32> = resources.iter().enumerate().map(|(index, resource)| (resource.name.as_str(), index as u32)).collect();
-    let mut latest: HashMap<u32, PassId> = HashMap::new();
-    let (mut passes, mut steps) = (Vec::new(), Vec::new());
+    let extent = |resource: &Resource| match &resource.shape {
+        Shape::Texture(shape) => (true, shape.mips, shape.layers),
+        Shape::Buffer { .. } => (false, 1, 1),
+    };
+    let extents: Vec<(bool, u32, u32)> = resources.iter().map(extent).collect();
+    let mut latest: Vec<Option<PassId>> = vec![None; resources.len()];
+    let mut passes = Vec::with_capacity(declared.passes.len());
+    let mut steps = Vec::with_capacity(declared.passes.len());
     for (index, entry) in declared.passes.iter().enumerate() {
         let pass = PassId(index as u32);
-        let mut uses = Vec::new();
+        let mut uses = Vec::with_capacity(entry.reads.len() + entry.writes.len() + entry.modifies.len());
         for (names, role) in [(&entry.reads, Role::Read), (&entry.writes, Role::Produce), (&entry.modifies, Role::Modify)] {
             for name in names {
                 let id = ids[name.as_str()];
-                let version = if role == Role::Read { latest.get(&id).copied() } else { latest.insert(id, pass).and(None) };
-                let (mips, access) = match (&resources[id as usize].shape, role) {
-                    (Shape::Texture(shape), Role::Read) => (shape.mips, Access::Sampled),
-                    (Shape::Texture(shape), _) => (shape.mips, Access::StorageWrite),
-                    (Shape::Buffer { .. }, Role::Read) => (1, Access::StorageRead),
-                    (Shape::Buffer { .. }, _) => (1, Access::StorageReadWrite),
+                let latest = &mut latest[id as usize];
+                let version = if role == Role::Read { *latest } else { latest.replace(pass).and(None) };
+                let (is_texture, mips, layers) = extents[id as usize];
+                let access = match (is_texture, role) {
+                    (true, Role::Read) => Access::Sampled,
+                    (true, _) => Access::StorageWrite,
+                    (false, Role::Read) => Access::StorageRead,
+                    (false, _) => Access::StorageReadWrite,
                 };
-                let layers = if let Shape::Texture(shape) = &resources[id as usize].shape { shape.layers } else { 1 };
                 let slot = String::new();
                 uses.push(Use {
                     resource: ResourceId(id),
@@ -132,9 +143,8 @@ pub fn bound(declared: &Declared) -> Bound {
                 });
             }
         }
-        let name = entry.name.clone();
         passes.push(Pass {
-            name: name.clone(),
+            name: entry.name.clone(),
             span: Span::NOWHERE,
             block: Default::default(),
             list: 0,
@@ -153,7 +163,7 @@ pub fn bound(declared: &Declared) -> Bound {
         let kind = StepKind::Compute { entry: String::new(), groups: Workgroups::Fixed([1, 1, 1]) };
         steps.push(Step {
             pass,
-            name,
+            name: entry.name.clone(),
             span: Span::NOWHERE,
             shader: None,
             kind,

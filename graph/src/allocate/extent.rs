@@ -33,9 +33,8 @@ pub fn resource_bytes(resource: &Resource, format: Option<Format>) -> Option<u64
     }
 }
 
-/// What a resource is charged for: tight bytes of a texture, whole units of an arena for a buffer.
-pub(crate) fn charged_bytes(resource: &Resource, format: Option<Format>) -> Option<u64> {
-    let bytes = resource_bytes(resource, format)?;
+/// What a resource of so many bytes is charged for: tight bytes of a texture, whole units of an arena for a buffer.
+pub(crate) fn charged_bytes(resource: &Resource, bytes: u64) -> Option<u64> {
     if matches!(resource.shape, Shape::Buffer { .. }) { round_up(bytes, ARENA_ALIGNMENT) } else { Some(bytes) }
 }
 

@@ -3,12 +3,12 @@
 use std::cmp::Reverse;
 
 use super::Allocation;
-use super::extent::{format_of, resource_bytes};
+use super::model::Model;
 use crate::bind::types::Bound;
 use crate::device::DeviceFacts;
 use crate::diagnostic::Diagnostic;
 use crate::dump::units::bytes as human;
-use crate::expand::types::{Dimension, Resource, ResourceId, Shape};
+use crate::expand::types::{Dimension, Resource, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::Usage;
 
@@ -16,13 +16,13 @@ use crate::plan::Usage;
 const LISTED: usize = 8;
 
 /// Extents of every resource in use.
-pub(crate) fn resources(bound: &Bound, lifetimes: &Lifetimes, usages: &[Usage], device: &DeviceFacts) -> Vec<Diagnostic> {
+pub(crate) fn resources(bound: &Bound, model: &Model, lifetimes: &Lifetimes, usages: &[Usage], device: &DeviceFacts) -> Vec<Diagnostic> {
     let mut found = Vec::new();
     for (index, resource) in bound.expanded.resources.iter().enumerate() {
         if lifetimes.ranges[index].is_empty() {
             continue;
         }
-        match resource_bytes(resource, format_of(bound, ResourceId(index as u32))) {
+        match model.tight[index] {
             None => found.push(
                 Diagnostic::error("allocate::too-large", format!("`{}` is larger than 64 bits can count", resource.name))
                     .at(resource.span, "declared here")
@@ -45,12 +45,12 @@ fn extent(resource: &Resource, bytes: u64, usage: Usage, device: &DeviceFacts, f
         Shape::Texture(shape) => {
             let edge = u64::from(shape.width.max(shape.height).max(shape.depth));
             let (limit, what) = match shape.dimension {
-                Dimension::D1 => (device.max_texture_1d, "along a 1D texture"),
-                Dimension::D2 => (device.max_texture_2d, "along an edge"),
-                Dimension::Cube => (device.max_texture_2d, "along an edge of a cube"),
-                Dimension::D3 => (device.max_texture_3d, "along an edge of a volume"),
+                Dimension::D1 => (device.max_texture_1d, " along a 1D texture"),
+                Dimension::D2 => (device.max_texture_2d, " along an edge"),
+                Dimension::Cube => (device.max_texture_2d, " along an edge of a cube"),
+                Dimension::D3 => (device.max_texture_3d, " along an edge of a volume"),
             };
-            over("allocate::texture-too-large", &format!(" {what}"), edge, u64::from(limit), "texels");
+            over("allocate::texture-too-large", what, edge, u64::from(limit), "texels");
             over("allocate::too-many-layers", "", u64::from(shape.layers), u64::from(device.max_layers), "layers");
         }
         Shape::Buffer { .. } => {

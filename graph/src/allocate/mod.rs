@@ -20,9 +20,8 @@ use crate::expand::types::{Dimension, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, StepKind, Usage};
 use crate::schedule::Schedule;
-use crate::schedule::flow::Flow;
-use extent::{format_of, resource_bytes};
-use model::{Model, Pool};
+use extent::format_of;
+use model::Pool;
 
 /// Where everything lives. All lists but `memories` are by resource id.
 #[derive(Debug, Clone, PartialEq)]
@@ -44,7 +43,7 @@ pub struct Allocation {
 /// Assigns memory to every resource that a scheduled pass uses. Fails, with all reasons, where a limit or the budget is exceeded.
 pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, device: &DeviceFacts) -> Result<Allocation, Vec<Diagnostic>> {
     let usages = usages(bound, schedule);
-    let problems = limits::resources(bound, lifetimes, &usages, device);
+    let problems = limits::resources(bound, &schedule.model, lifetimes, &usages, device);
     if !problems.is_empty() {
         return Err(problems);
     }
@@ -53,15 +52,6 @@ pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, devic
         Some(problem) => Err(vec![problem]),
         None => Ok(allocation),
     }
-}
-
-/// Bytes that the executor would allocate for transients in an order.
-pub(crate) fn bytes_reached(flow: &Flow, model: &Model, order: &[u32]) -> u64 {
-    let ranges = flow.ranges(order);
-    let buffers = flow.pools.iter().enumerate().filter(|(_, pool)| **pool == Pool::Buffer);
-    let buffers = buffers.map(|(item, _)| (flow.resources[item].0, ranges[item].clone()));
-    let arenas = arenas::pack(model, buffers, arenas::ARENA_LIMIT);
-    arenas.iter().fold(textures::bytes_reached(flow, model, order, &ranges), |sum, arena| sum.saturating_add(arena.bytes()))
 }
 
 fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<Usage>, device: &DeviceFacts) -> Allocation {
@@ -74,18 +64,14 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
     };
     let mut memories: Vec<Memory> = Vec::new();
     let mut placements: Vec<Option<Placement>> = vec![None; resources.len()];
-    for slot in textures::assign(model, ranges, &usages) {
-        let Some(first) = slot.holders.first().map(|resource| *resource as usize) else { continue };
+    let timeline = textures::Timeline::new(model, ranges);
+    for textures::Slot { usage, holders } in textures::assign(model, &timeline, &usages) {
+        let Some(first) = holders.first().map(|resource| resource.index()) else { continue };
         let memory = MemoryId(memories.len() as u32);
-        for holder in &slot.holders {
-            placements[*holder as usize] = Some(Placement { memory, offset: 0 });
+        for holder in &holders {
+            placements[holder.index()] = Some(Placement { memory, offset: 0 });
         }
-        memories.push(Memory {
-            kind: texture_kind(first),
-            usage: slot.usage,
-            bytes: model.charged[first],
-            holders: slot.holders.iter().map(|resource| ResourceId(*resource)).collect(),
-        });
+        memories.push(Memory { kind: texture_kind(first), usage, bytes: model.charged[first], holders });
     }
     let buffers = (0..resources.len())
         .filter(|index| model.pools[*index] == Pool::Buffer && model.is_transient(*index) && !ranges[*index].is_empty());
@@ -115,34 +101,29 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
         declared_bound: schedule.flow.peak(&schedule.flow.declared, &schedule.flow.bytes),
         retained: sum(&memories[transient_memories..]),
     };
-    let alone = refusals::refusals(model, lifetimes, &memories, &placements);
-    let bytes = resources.iter().enumerate().map(|(index, resource)| {
-        // Resources in use were checked; others only show their size.
-        resource_bytes(resource, format_of(bound, ResourceId(index as u32))).unwrap_or(u64::MAX)
-    });
+    let alone = refusals::refusals(model, lifetimes, &timeline, &memories, &placements);
+    // Resources in use were checked; others only show their size.
+    let bytes = model.tight.iter().map(|bytes| bytes.unwrap_or(u64::MAX));
     Allocation { memories, placements, bytes: bytes.collect(), usages, alone, figures }
 }
 
 /// What the steps that run do to each resource, clears and the reading of outputs by the host included.
 fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
-    let mut usages = vec![Usage::default(); bound.expanded.resources.len()];
+    let mut usages = schedule.model.usages.clone();
     let mut add = |resource: ResourceId, usage: Usage| {
         if let Some(entry) = usages.get_mut(resource.index()) {
             *entry = entry.union(usage);
         }
     };
     let clear = |part: &PartView| clear_usage(bound, part.resource);
-    for pass in &schedule.order {
+    // In the order of the file, in which steps lie in memory.
+    for pass in &schedule.declared {
         let step = &bound.steps[pass.index()];
-        for used in &step.uses {
-            add(used.resource, used.access.usage());
-            if used.access == crate::plan::Access::Clear {
-                add(used.resource, clear_usage(bound, used.resource));
-            }
-        }
-        // Its first value.
-        if let StepKind::Remember { target, .. } = &step.kind {
-            add(target.resource, clear(target));
+        match &step.kind {
+            StepKind::Clear { target, .. } => add(target.resource, clear(target)),
+            // Its first value.
+            StepKind::Remember { target, .. } => add(target.resource, clear(target)),
+            _ => {}
         }
         for (part, _) in &step.clears {
             add(part.resource, clear(part));

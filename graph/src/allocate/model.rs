@@ -2,35 +2,23 @@
 
 use std::collections::{BTreeMap, HashMap};
 
-use super::extent::{charged_bytes, format_of};
+use super::extent::{charged_bytes, format_of, resource_bytes};
 use crate::bind::types::Bound;
 use crate::expand::types::{ResourceId, Shape, TextureShape};
 use crate::format::Format;
 use crate::lifetime::Touches;
-use crate::plan::{Access, Retained, Step};
+use crate::plan::{Access, Retained, Usage};
+use crate::schedule::{Touch, Uses};
 
-/// Everything of a texture's descriptor but usage and name: equal keys can share.
+/// Everything of a texture's descriptor but usage and name: equal keys can share. One list of numbers, which is hashed fast.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-pub(crate) struct Descriptor {
-    dimension: crate::expand::types::Dimension,
-    format: Format,
-    extent: [u32; 3],
-    layers: u32,
-    mips: u32,
-    samples: u32,
-}
+pub(crate) struct Descriptor([u32; 8]);
 
 impl Descriptor {
     /// The descriptor of a texture.
     pub(crate) fn of(shape: &TextureShape, format: Format) -> Descriptor {
-        Descriptor {
-            dimension: shape.dimension,
-            format,
-            extent: [shape.width, shape.height, shape.depth],
-            layers: shape.layers,
-            mips: shape.mips,
-            samples: shape.samples,
-        }
+        let TextureShape { dimension, width, height, depth, layers, mips, samples, .. } = *shape;
+        Descriptor([dimension as u32, format.number(), width, height, depth, layers, mips, samples])
     }
 }
 
@@ -48,10 +36,14 @@ pub(crate) enum Pool {
 pub struct Model {
     /// By resource.
     pub(crate) pools: Vec<Pool>,
-    /// By resource; saturated where they do not fit.
+    /// By resource: tight bytes, if 64 bits can count them.
+    pub(crate) tight: Vec<Option<u64>>,
+    /// By resource: what it is charged for; saturated where it does not fit.
     pub(crate) charged: Vec<u64>,
     /// By resource.
     pub(crate) retained: Vec<bool>,
+    /// By resource: what the uses of passes that run do to it.
+    pub(crate) usages: Vec<Usage>,
     /// By descriptor: bytes of a texture.
     pub(crate) descriptors: Vec<u64>,
     /// For each buffer the buffers that it must not share an arena with, by id.
@@ -62,14 +54,17 @@ pub struct Model {
 
 impl Model {
     /// Reads a pipeline. `alive` tells for each pass whether it runs.
-    pub(crate) fn new(bound: &Bound, retained: &[Option<Retained>], alive: impl Fn(usize) -> bool) -> Model {
+    pub(crate) fn new(bound: &Bound, uses: &Uses, retained: &[Option<Retained>], alive: &[bool]) -> Model {
         // Looked up and never walked, so its order does not matter.
         let mut known: HashMap<Descriptor, u32> = HashMap::new();
         let mut descriptors = Vec::new();
-        let (mut pools, mut charged) = (Vec::new(), Vec::new());
+        let count = bound.expanded.resources.len();
+        let (mut pools, mut tight, mut charged) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));
         for (index, resource) in bound.expanded.resources.iter().enumerate() {
             let format = format_of(bound, ResourceId(index as u32));
-            let bytes = charged_bytes(resource, format).unwrap_or(u64::MAX);
+            let own = resource_bytes(resource, format);
+            let bytes = own.and_then(|own| charged_bytes(resource, own)).unwrap_or(u64::MAX);
+            tight.push(own);
             charged.push(bytes);
             pools.push(match (&resource.shape, format) {
                 (Shape::Texture(shape), Some(format)) => Pool::Texture(*known.entry(Descriptor::of(shape, format)).or_insert_with(|| {
@@ -80,8 +75,14 @@ impl Model {
             });
         }
         let mut conflicts = BTreeMap::new();
-        for (_, step) in bound.steps.iter().enumerate().filter(|(index, _)| alive(*index)) {
-            enter_conflicts(step, &pools, &mut conflicts);
+        let mut usages = vec![Usage::default(); count];
+        for pass in (0..bound.steps.len()).filter(|pass| alive[*pass]) {
+            enter_conflicts(uses.of_pass(pass), &pools, &mut conflicts);
+            for touch in uses.of_pass(pass) {
+                if let Some(usage) = usages.get_mut(touch.resource.index()) {
+                    *usage = usage.union(touch.access.usage());
+                }
+            }
         }
         for others in conflicts.values_mut() {
             others.sort_unstable();
@@ -89,11 +90,13 @@ impl Model {
         }
         Model {
             pools,
+            tight,
             charged,
             retained: retained.iter().map(Option::is_some).collect(),
+            usages,
             descriptors,
             conflicts,
-            touches: Touches::new(bound),
+            touches: Touches::new(bound, uses),
         }
     }
 
@@ -130,10 +133,10 @@ impl Tracked {
     }
 }
 
-fn enter_conflicts(step: &Step, pools: &[Pool], conflicts: &mut BTreeMap<u32, Vec<u32>>) {
+fn enter_conflicts(uses: &[Touch], pools: &[Pool], conflicts: &mut BTreeMap<u32, Vec<u32>>) {
     let is_buffer = |resource: ResourceId| pools.get(resource.index()) == Some(&Pool::Buffer);
     let buffers: Vec<(Tracked, u32)> =
-        step.uses.iter().filter(|used| is_buffer(used.resource)).map(|used| (Tracked::of(used.access), used.resource.0)).collect();
+        uses.iter().filter(|used| is_buffer(used.resource)).map(|used| (Tracked::of(used.access), used.resource.0)).collect();
     for (tracked, buffer) in &buffers {
         for (other_tracked, other) in &buffers {
             if tracked != other_tracked && buffer != other {

@@ -3,15 +3,21 @@
 use std::ops::Range;
 
 use super::model::{Model, Pool};
-use super::textures::peaks;
+use super::textures::{Timeline, peaks};
 use crate::expand::types::ResourceId;
 use crate::lifetime::Lifetimes;
 use crate::plan::{Alone, Memory, MemoryKind, Placement};
 
 /// By resource id; `None` where bytes are shared, or not in use at all.
-pub(crate) fn refusals(model: &Model, lifetimes: &Lifetimes, memories: &[Memory], placements: &[Option<Placement>]) -> Vec<Option<Alone>> {
+pub(crate) fn refusals(
+    model: &Model,
+    lifetimes: &Lifetimes,
+    timeline: &Timeline,
+    memories: &[Memory],
+    placements: &[Option<Placement>],
+) -> Vec<Option<Alone>> {
     let ranges = &lifetimes.ranges;
-    let peaks = peaks(model, ranges);
+    let peaks = peaks(model, timeline);
     let mut of_descriptor = vec![0usize; model.descriptors.len()];
     let mut buffers: Vec<usize> = Vec::new();
     for index in (0..ranges.len()).filter(|index| model.is_transient(*index) && !ranges[*index].is_empty()) {

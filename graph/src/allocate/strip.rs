@@ -5,12 +5,13 @@
 //!
 //! Neighbours are found through a binary tree over blocks of steps. An entry is kept at the few nodes that together are just
 //! the blocks that it is in use all through, at the leaves where it begins and ends, and in the summary of every node above
-//! those. Byte ranges that touch are joined, so that thousands of long-lived entries cost as much as one.
+//! those. Byte ranges that touch are joined, so that thousands of long-lived entries cost as much as one. All lists are kept in
+//! ascending order, so that what is in use is found by merging them.
 
 use std::ops::Range;
 
 /// Steps of a leaf.
-const BLOCK: usize = 16;
+const BLOCK: usize = 64;
 
 /// An entry: first and last step, first byte and end.
 #[derive(Debug, Clone, Copy)]
@@ -37,7 +38,7 @@ struct Node {
     throughout: Vec<(u64, u64)>,
     /// Byte ranges of entries in use during some of its steps and kept at it (a leaf) or below.
     within: Vec<(u64, u64)>,
-    /// Of a leaf: entries that begin or end in it.
+    /// Of a leaf: entries that begin or end in it, by first byte.
     passing: Vec<Entry>,
 }
 
@@ -47,14 +48,14 @@ pub(crate) struct Strip {
     /// The root at 1, the children of node n at 2n and 2n + 1.
     nodes: Vec<Node>,
     size: u64,
-    neighbours: Vec<(u64, u64)>,
+    neighbours: Union,
 }
 
 impl Strip {
     /// An empty strip of so many steps.
     pub(crate) fn new(steps: usize) -> Strip {
         let leaves = steps.div_ceil(BLOCK).max(1).next_power_of_two();
-        Strip { nodes: vec![Node::default(); 2 * leaves], size: 0, neighbours: Vec::new() }
+        Strip { nodes: vec![Node::default(); 2 * leaves], size: 0, neighbours: Union::default() }
     }
 
     /// Bytes that it takes.
@@ -65,11 +66,10 @@ impl Strip {
     /// The best place for `bytes` during `steps`, at a multiple of `unit`.
     pub(crate) fn fit(&mut self, steps: &Range<usize>, bytes: u64, unit: u64) -> Fit {
         self.gather(steps);
-        self.neighbours.sort_unstable();
         let aligned = |offset: u64| offset.checked_next_multiple_of(unit).unwrap_or(u64::MAX);
         let mut top = 0;
         let mut best: Option<(u64, u64)> = None;
-        for (start, end) in self.neighbours.iter().copied() {
+        for (start, end) in self.neighbours.ranges.iter().copied() {
             if start > top && start - top >= bytes {
                 let waste = start - top - bytes;
                 if best.is_none_or(|(least, _)| waste < least) {
@@ -90,7 +90,9 @@ impl Strip {
         let covered = Covered::new(steps, self.nodes.len() / 2);
         let entry = Entry { steps: (steps.start as u32, steps.end.saturating_sub(1) as u32), bytes };
         for leaf in covered.partly() {
-            self.nodes[leaf].passing.push(entry);
+            let passing = &mut self.nodes[leaf].passing;
+            let place = passing.partition_point(|other| other.bytes.0 < bytes.0);
+            passing.insert(place, entry);
         }
         for node in covered.wholly() {
             join(&mut self.nodes[node].throughout, bytes);
@@ -101,23 +103,62 @@ impl Strip {
         self.size = self.size.max(bytes.1);
     }
 
-    /// Byte ranges in use during any of the steps. Some may come twice.
+    /// Finds the byte ranges in use during any of the steps.
     fn gather(&mut self, steps: &Range<usize>) {
         let Strip { nodes, neighbours, .. } = self;
-        neighbours.clear();
+        neighbours.ranges.clear();
         let covered = Covered::new(steps, nodes.len() / 2);
         let (first, last) = (steps.start as u32, steps.end.saturating_sub(1) as u32);
-        for leaf in covered.partly() {
-            let met = nodes[leaf].passing.iter().filter(|entry| entry.steps.0 <= last && entry.steps.1 >= first);
-            neighbours.extend(met.map(|entry| entry.bytes));
+        // Short lists first.
+        for node in covered.paths() {
+            neighbours.add(nodes[node].throughout.iter().copied());
         }
         for node in covered.wholly() {
-            neighbours.extend_from_slice(&nodes[node].within);
-            neighbours.extend_from_slice(&nodes[node].throughout);
+            neighbours.add(nodes[node].throughout.iter().copied());
+            neighbours.add(nodes[node].within.iter().copied());
         }
-        for node in covered.paths() {
-            neighbours.extend_from_slice(&nodes[node].throughout);
+        for leaf in covered.partly() {
+            let met = nodes[leaf].passing.iter().filter(|entry| entry.steps.0 <= last && entry.steps.1 >= first);
+            neighbours.add(met.map(|entry| entry.bytes));
         }
+    }
+}
+
+/// Disjoint byte ranges in ascending order.
+#[derive(Debug, Default)]
+struct Union {
+    ranges: Vec<(u64, u64)>,
+    spare: Vec<(u64, u64)>,
+}
+
+impl Union {
+    /// Adds ranges that ascend by first byte.
+    fn add(&mut self, others: impl Iterator<Item = (u64, u64)>) {
+        let Union { ranges, spare } = self;
+        spare.clear();
+        let mut own = 0;
+        for other in others {
+            while let Some(range) = ranges.get(own).filter(|range| range.0 <= other.0) {
+                append(spare, *range);
+                own += 1;
+            }
+            append(spare, other);
+        }
+        if spare.is_empty() {
+            return;
+        }
+        for range in &ranges[own..] {
+            append(spare, *range);
+        }
+        std::mem::swap(ranges, spare);
+    }
+}
+
+/// Adds a range to disjoint ones, none of which begins after it.
+fn append(ranges: &mut Vec<(u64, u64)>, range: (u64, u64)) {
+    match ranges.last_mut() {
+        Some(last) if range.0 <= last.1 => last.1 = last.1.max(range.1),
+        _ => ranges.push(range),
     }
 }
 

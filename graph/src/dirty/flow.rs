@@ -14,39 +14,9 @@ use petgraph::graph::{DiGraph, NodeIndex};
 
 use super::cells::Cells;
 use crate::expand::types::{PassId, ResourceId, Run};
+use crate::lists::Lists;
 use crate::plan::{InputId, Role, Step, Use};
 use crate::schedule::part::{Rect, merged};
-
-/// Lists of numbers, one after the other in one allocation.
-#[derive(Debug, Clone, Default)]
-pub(super) struct Lists {
-    ends: Vec<u32>,
-    items: Vec<u32>,
-}
-
-impl Lists {
-    /// Sorts pairs of (list, item) into `count` lists; repeated pairs are kept once.
-    fn new(count: usize, mut pairs: Vec<(u32, u32)>) -> Lists {
-        pairs.sort_unstable();
-        pairs.dedup();
-        let mut ends = vec![0; count];
-        for (list, _) in &pairs {
-            ends[*list as usize] += 1;
-        }
-        let mut sum = 0;
-        for end in &mut ends {
-            sum += *end;
-            *end = sum;
-        }
-        Lists { ends, items: pairs.into_iter().map(|(_, item)| item).collect() }
-    }
-
-    /// One list.
-    pub(super) fn of(&self, list: usize) -> &[u32] {
-        let start = list.checked_sub(1).map_or(0, |before| self.ends[before] as usize);
-        &self.items[start..self.ends[list] as usize]
-    }
-}
 
 /// A step, or an iteration of one.
 #[derive(Debug, Clone, Copy)]
@@ -237,7 +207,7 @@ impl Flow {
             source.pieces.sort_unstable();
             source.pieces.dedup();
         }
-        let numbered = |pairs: Vec<(u32, u32)>, lists: usize| Lists::new(lists, pairs);
+        let numbered = |pairs: Vec<(u32, u32)>, lists: usize| Lists::sets(lists, pairs);
         let units = self.unit_of.iter().copied().max().map_or(0, |last| last as usize + 1);
         let pieces = || (0u32..).zip(&self.pieces);
         let unit_pieces = numbered(pieces().map(|(at, piece)| (piece.unit, at)).collect(), units);
@@ -349,7 +319,7 @@ impl Flow {
         }
         let amortised = |run: Run| matches!(run, Run::Spread { .. } | Run::Accumulate(_));
         let members = self.nodes.iter().enumerate().filter(|(_, node)| amortised(node.run));
-        self.amortised = Lists::new(self.nodes.len(), members.map(|(node, _)| (self.cycle_of[node], node as u32)).collect());
+        self.amortised = Lists::sets(self.nodes.len(), members.map(|(node, _)| (self.cycle_of[node], node as u32)).collect());
     }
 
     /// The nodes that leave what a node modifies.

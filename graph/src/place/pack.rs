@@ -1,8 +1,8 @@
 //! A two-dimensional packing of time and bytes.
 //!
 //! In descending order of size each item takes the tightest hole between its neighbours in time, see [`Strip`]. While the heap is
-//! larger than the peak of live bytes and items are few, further packings start with those that stood above the peak; the smallest
-//! heap stays.
+//! clearly larger than the peak of live bytes and items are few, further packings start with those that stood above the peak; the
+//! smallest heap stays.
 
 use std::cmp::Reverse;
 use std::ops::Range;
@@ -11,9 +11,11 @@ use crate::allocate::strip::Strip;
 use crate::schedule::flow::Flow;
 
 /// Items times further packings. Many items fill each other's holes, and are packed once.
-const EFFORT: usize = 400;
+const EFFORT: usize = 200;
 /// Further packings of the fewest items.
 const MOST_REPACKS: usize = 16;
+/// The part of the peak that a heap may be larger by without being packed again.
+const NEAR: u64 = 256;
 
 /// First byte of each item.
 pub(crate) struct Packed {
@@ -33,7 +35,7 @@ pub(crate) fn pack(flow: &Flow, bytes: &[u64], units: &[u64], order: &[u32], bou
     let repacks = (EFFORT / bytes.len().max(1)).min(MOST_REPACKS);
     let mut offsets = best.offsets.clone();
     for _ in 0..repacks {
-        if best.bytes <= bound {
+        if best.bytes <= bound.saturating_add(bound / NEAR) {
             break;
         }
         // Stable: among those above and among the others the order stays.

@@ -7,7 +7,9 @@
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
+use std::hash::{BuildHasherDefault, Hasher};
 
+use crate::lists::Lists;
 use crate::schedule::flow::Flow;
 
 /// Sets that are looked at.
@@ -25,6 +27,8 @@ pub(crate) fn best_order(flow: &Flow, bytes: &[u64], limit: u64) -> Option<(Vec<
 #[derive(Clone, Copy)]
 struct State {
     done: u64,
+    /// The passes that could run next.
+    ready: u64,
     live: u64,
     peak: u64,
     /// The state before the last pass, and that pass.
@@ -34,38 +38,78 @@ struct State {
 /// Least peak, then most passes, then least live bytes, then the first found; and which state.
 type Ranked = (Reverse<u64>, u32, Reverse<u64>, Reverse<u32>);
 
+/// Mixes one number, for sets of passes: looked up and never walked.
+#[derive(Default)]
+struct Mixer(u64);
+
+impl Hasher for Mixer {
+    fn finish(&self) -> u64 {
+        self.0
+    }
+
+    fn write(&mut self, bytes: &[u8]) {
+        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
+    }
+
+    fn write_u64(&mut self, number: u64) {
+        // The upper bits of a product depend on all of the number; tables use the lower ones, too.
+        let product = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
+        self.0 = product ^ product >> 32;
+    }
+}
+
 struct Search<'a> {
     flow: &'a Flow,
-    bytes: &'a [u64],
     /// By pass: what it needs, joins resolved.
     needs: Vec<u64>,
-    /// By item: who touches it.
-    users: Vec<u64>,
+    /// By pass: what needs it.
+    needed_by: Vec<u64>,
+    /// By item: who touches it, and its bytes.
+    items: Vec<(u64, u64)>,
     states: Vec<State>,
 }
 
+/// The numbers of a set.
+fn members(mut set: u64) -> impl Iterator<Item = u32> {
+    std::iter::from_fn(move || {
+        let first = (set != 0).then(|| set.trailing_zeros())?;
+        set &= set - 1;
+        Some(first)
+    })
+}
+
 impl<'a> Search<'a> {
-    fn new(flow: &'a Flow, bytes: &'a [u64]) -> Search<'a> {
+    fn new(flow: &'a Flow, bytes: &[u64]) -> Search<'a> {
         let bit = |node: &u32| 1u64 << node;
         let passes_of = |nodes: &[u32]| nodes.iter().filter(|node| flow.is_pass(**node)).map(bit).fold(0, |set, bit| set | bit);
-        let needs = (0..flow.passes.len())
-            .map(|pass| {
-                let before = flow.before.of(pass);
-                // A join stands between passes, never before another join.
-                let joins = before.iter().filter(|node| !flow.is_pass(**node));
-                joins.fold(passes_of(before), |set, join| set | passes_of(flow.before.of(*join as usize)))
-            })
-            .collect();
-        let users = (0..bytes.len()).map(|item| passes_of(flow.users.of(item))).collect();
-        Search { flow, bytes, needs, users, states: Vec::new() }
+        // A join stands between passes, never before another join.
+        let behind = |lists: &Lists, pass: usize| {
+            let direct = lists.of(pass);
+            let joins = direct.iter().filter(|node| !flow.is_pass(**node));
+            joins.fold(passes_of(direct), |set, join| set | passes_of(lists.of(*join as usize)))
+        };
+        let needs = (0..flow.passes.len()).map(|pass| behind(&flow.before, pass)).collect();
+        let needed_by = (0..flow.passes.len()).map(|pass| behind(&flow.after, pass)).collect();
+        let items = bytes.iter().enumerate().map(|(item, bytes)| (passes_of(flow.users.of(item)), *bytes)).collect();
+        Search { flow, needs, needed_by, items, states: Vec::new() }
+    }
+
+    /// What no order can do without: the most that one pass touches.
+    fn floor(&self) -> u64 {
+        let touched = |pass: usize| self.flow.touches.of(pass).iter().map(|item| self.items[*item as usize].1);
+        let sums = (0..self.needs.len()).map(|pass| touched(pass).fold(0, u64::saturating_add));
+        sums.max().unwrap_or(0)
     }
 
     fn run(&mut self, limit: u64) -> Option<(Vec<u32>, u64)> {
+        if limit <= self.floor() {
+            return None;
+        }
         let all = u64::MAX >> (64 - self.flow.passes.len());
-        // Looked up and never walked.
-        let mut known: HashSet<u64> = HashSet::new();
+        let mut known: HashSet<u64, BuildHasherDefault<Mixer>> = HashSet::default();
         let mut queue: BinaryHeap<Ranked> = BinaryHeap::new();
-        self.states.push(State { done: 0, live: 0, peak: 0, came_from: None });
+        let ready = self.needs.iter().enumerate().fold(0, |set, (pass, needs)| if *needs == 0 { set | 1 << pass } else { set });
+        self.states.push(State { done: 0, ready, live: 0, peak: 0, came_from: None });
         queue.push((Reverse(0), 0, Reverse(0), Reverse(0)));
         while let Some((.., Reverse(index))) = queue.pop() {
             let index = self.settle(index);
@@ -80,7 +124,7 @@ impl<'a> Search<'a> {
             if !known.insert(state.done) {
                 continue;
             }
-            for pass in self.ready(state.done) {
+            for pass in members(state.ready) {
                 let next = self.after(index, pass);
                 if next.peak < limit && !known.contains(&next.done) {
                     let number = self.states.len() as u32;
@@ -92,40 +136,32 @@ impl<'a> Search<'a> {
         None
     }
 
-    fn ready(&self, done: u64) -> impl Iterator<Item = u32> + use<> {
-        let ready: u64 = self.needs.iter().enumerate().fold(0, |set, (pass, needs)| if needs & !done == 0 { set | 1 << pass } else { set });
-        let ready = ready & !done;
-        (0..64u32).filter(move |pass| ready >> pass & 1 == 1)
-    }
-
     fn after(&self, from: u32, pass: u32) -> State {
-        let State { done, live, peak, .. } = self.states[from as usize];
+        let State { done, ready, live, peak, .. } = self.states[from as usize];
         let now = done | 1 << pass;
         let (mut during, mut freed) = (live, 0u64);
-        for item in self.flow.touches.of(pass as usize).iter().map(|item| *item as usize) {
-            if self.users[item] & done == 0 {
-                during = during.saturating_add(self.bytes[item]);
+        for item in self.flow.touches.of(pass as usize) {
+            let (users, bytes) = self.items[*item as usize];
+            if users & done == 0 {
+                during = during.saturating_add(bytes);
             }
-            if self.users[item] & !now == 0 {
-                freed = freed.saturating_add(self.bytes[item]);
+            if users & !now == 0 {
+                freed = freed.saturating_add(bytes);
             }
         }
-        State { done: now, live: during.saturating_sub(freed), peak: peak.max(during), came_from: Some((from, pass)) }
+        let released = members(self.needed_by[pass as usize]).filter(|later| self.needs[*later as usize] & !now == 0);
+        let ready = released.fold(ready & !(1 << pass), |set, later| set | 1 << later);
+        State { done: now, ready, live: during.saturating_sub(freed), peak: peak.max(during), came_from: Some((from, pass)) }
     }
 
     /// Runs every pass that can do no harm.
     fn settle(&mut self, mut index: u32) -> u32 {
-        'again: loop {
+        loop {
             let state = self.states[index as usize];
-            for pass in self.ready(state.done) {
-                let next = self.after(index, pass);
-                if next.live <= state.live && next.peak <= state.peak {
-                    index = self.states.len() as u32;
-                    self.states.push(next);
-                    continue 'again;
-                }
-            }
-            return index;
+            let mut harmless = members(state.ready).map(|pass| self.after(index, pass));
+            let Some(next) = harmless.find(|next| next.live <= state.live && next.peak <= state.peak) else { return index };
+            index = self.states.len() as u32;
+            self.states.push(next);
         }
     }
 

@@ -3,59 +3,59 @@
 //! A pass is alive if it left a value that an asked-for output shows or a live pass reads or modifies. `after` and the order of a
 //! reader before a modifier keep nothing alive.
 
-use petgraph::Direction;
-use petgraph::graph::NodeIndex;
-use petgraph::visit::EdgeRef;
-
-use super::dag::{Dag, Node, Reason};
-use super::versions::Grid;
+use super::dag::Dag;
+use super::uses::Uses;
+use super::versions::{Grid, Versions, writes};
 use crate::bind::types::Bound;
 use crate::expand::types::PassId;
+use crate::lists::Lists;
 use crate::plan::{CullReason, Culled, Role};
 
 /// For each node of the graph, whether it is needed.
-pub(crate) fn alive(dag: &Dag, grids: &[Grid]) -> Vec<bool> {
+pub(crate) fn alive(bound: &Bound, uses: &Uses, dag: &Dag, versions: &Versions) -> Vec<bool> {
     let mut alive = vec![false; dag.node_count()];
-    let roots = grids.iter().flat_map(|grid| &grid.regions).filter(|region| !region.outputs.is_empty());
-    let mut open: Vec<NodeIndex> = roots.flat_map(|region| &region.writers).map(|pass| NodeIndex::new(pass.index())).collect();
+    let mut open: Vec<u32> = Vec::new();
+    for grid in bound.expanded.outputs.iter().map(|output| versions.grid(output.part.resource.index())) {
+        let shown = grid.regions.iter().filter(|region| !grid.outputs(region).is_empty());
+        open.extend(shown.flat_map(|region| grid.makers(region)).map(|pass| pass.0));
+    }
     // A pass that remembers the last frame needs whoever left the value then, without coming after it.
-    let mut recalled: Vec<(NodeIndex, NodeIndex)> = grids.iter().flat_map(recalled).collect();
+    let mut recalled: Vec<(u32, u32)> = versions.exceptional().flat_map(|grid| recalled(uses, grid)).collect();
     recalled.sort_unstable();
     while let Some(node) = open.pop() {
-        if std::mem::replace(&mut alive[node.index()], true) {
+        if std::mem::replace(&mut alive[node as usize], true) {
             continue;
         }
         let first = recalled.partition_point(|(recaller, _)| *recaller < node);
         open.extend(recalled[first..].iter().take_while(|(recaller, _)| *recaller == node).map(|(_, writer)| *writer));
-        let values = dag.edges_directed(node, Direction::Incoming).filter(|edge| edge.weight().reason == Reason::Value);
-        open.extend(values.map(|edge| edge.source()).filter(|source| !alive[source.index()]));
+        open.extend(dag.values.of(node as usize).iter().filter(|source| !alive[**source as usize]));
     }
     alive
 }
 
 /// Passes that remember a resource, each with every writer of it.
-fn recalled(grid: &Grid) -> impl Iterator<Item = (NodeIndex, NodeIndex)> {
-    let node = |pass: PassId| NodeIndex::new(pass.index());
-    let writers = || grid.cells.iter().flat_map(|cell| &cell.writers).map(|writer| writer.pass);
-    grid.recallers.iter().flat_map(move |recaller| writers().map(move |writer| (node(recaller.pass), node(writer))))
+fn recalled<'a>(uses: &'a Uses, grid: Grid<'a>) -> impl Iterator<Item = (u32, u32)> + 'a {
+    let pass = |id| uses.get(id).pass.0;
+    grid.exceptions.recallers.iter().flat_map(move |recaller| grid.all_writers().map(move |writer| (pass(*recaller), pass(writer))))
 }
 
 /// The passes that do not run, in the order of the file, each with what would have used its results.
-pub(crate) fn culled(bound: &Bound, dag: &Dag, alive: &[bool]) -> Vec<Culled> {
+pub(crate) fn culled(bound: &Bound, uses: &Uses, dag: &Dag, alive: &[bool]) -> Vec<Culled> {
+    let users = users(dag, alive);
     let mut found = Vec::new();
     for (index, step) in bound.steps.iter().enumerate().filter(|(index, _)| !alive[*index]) {
         let touched = |wanted: fn(Role) -> bool| {
-            let mut resources: Vec<_> = step.uses.iter().filter(|used| wanted(used.role)).map(|used| used.resource).collect();
+            let mut resources: Vec<_> = uses.of_pass(index).iter().filter(|used| wanted(used.role)).map(|used| used.resource).collect();
             resources.sort_unstable();
             resources.dedup();
             resources
         };
-        let writes = touched(super::versions::writes);
-        let users = users(dag, NodeIndex::new(index));
+        let writes = touched(writes);
+        let users = users.of(index);
         let reason = match (writes.is_empty(), users.is_empty()) {
             (true, _) => CullReason::WritesNothing,
             (false, true) => CullReason::Unread,
-            (false, false) => CullReason::OnlyCulledReaders(users),
+            (false, false) => CullReason::OnlyCulledReaders(users.iter().map(|pass| PassId(*pass)).collect()),
         };
         let kind = bound.expanded.passes.get(index).map_or("", |pass| pass.kind.name());
         let pass = PassId(index as u32);
@@ -64,19 +64,18 @@ pub(crate) fn culled(bound: &Bound, dag: &Dag, alive: &[bool]) -> Vec<Culled> {
     found
 }
 
-/// Passes that take a value from this one, by id.
-fn users(dag: &Dag, node: NodeIndex) -> Vec<PassId> {
-    let mut users = Vec::new();
-    let mut open = vec![node];
-    while let Some(node) = open.pop() {
-        for edge in dag.edges_directed(node, Direction::Outgoing).filter(|edge| edge.weight().reason == Reason::Value) {
-            match dag[edge.target()] {
-                Node::Pass(pass) => users.push(pass),
-                Node::Join => open.push(edge.target()),
-            }
+/// By pass that does not run: the passes that take a value from it, by id. They do not run either.
+fn users(dag: &Dag, alive: &[bool]) -> Lists {
+    let mut pairs: Vec<(u32, u32)> = Vec::new();
+    for user in (0..dag.passes as u32).filter(|pass| !alive[*pass as usize]) {
+        for source in dag.values.of(user as usize) {
+            // A join stands between passes, never before another join.
+            let behind = if (*source as usize) < dag.passes { std::slice::from_ref(source) } else { dag.values.of(*source as usize) };
+            pairs.extend(behind.iter().filter(|source| !alive[**source as usize]).map(|source| (*source, user)));
         }
     }
-    users.sort_unstable();
+    // Users come in ascending order.
+    let mut users = Lists::from_pairs(dag.passes, pairs.iter().copied());
     users.dedup();
     users
 }

@@ -7,16 +7,53 @@ use std::collections::VecDeque;
 
 use petgraph::Direction;
 use petgraph::algo::tarjan_scc;
-use petgraph::graph::NodeIndex;
+use petgraph::graph::{DiGraph, NodeIndex};
 use petgraph::visit::EdgeRef;
 
-use super::dag::{Dag, Dependency, Node, Reason};
+use super::dag::{Reason, walk};
+use super::uses::Uses;
+use super::versions::Versions;
 use crate::bind::types::Bound;
 use crate::diagnostic::Diagnostic;
-use crate::expand::types::PassId;
+use crate::expand::types::{PassId, ResourceId};
+use crate::source::Span;
+
+/// Why one node comes before another.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+struct Dependency {
+    reason: Reason,
+    resource: Option<ResourceId>,
+    span: Span,
+}
+
+/// A pass, or `None` for a join. A pass's id is its node's index.
+type Why = DiGraph<Option<PassId>, Dependency>;
+
+/// The graph with its reasons. Two nodes have at most one edge in each direction.
+fn explained(bound: &Bound, uses: &Uses, versions: &Versions) -> Why {
+    let mut edges = Vec::new();
+    let nodes = walk(bound, uses, versions, |edge| {
+        let span = match (edge.reason, edge.at) {
+            (Reason::After, _) => bound.steps[edge.to as usize].span,
+            (_, at) => at.map_or(Span::NOWHERE, |id| uses.in_step(bound, id).span),
+        };
+        edges.push((edge.from, edge.to, Dependency { reason: edge.reason, resource: edge.resource, span }));
+    });
+    edges.sort_unstable_by_key(|(from, to, why)| (*from, *to, why.reason, why.resource, why.span));
+    edges.dedup_by_key(|(from, to, _)| (*from, *to));
+    let mut graph = Why::with_capacity(nodes, edges.len());
+    for index in 0..nodes {
+        graph.add_node((index < bound.steps.len()).then_some(PassId(index as u32)));
+    }
+    for (from, to, why) in edges {
+        graph.add_edge(NodeIndex::new(from as usize), NodeIndex::new(to as usize), why);
+    }
+    graph
+}
 
 /// All cycles, by their first pass.
-pub(crate) fn cycles(bound: &Bound, dag: &Dag) -> Vec<Diagnostic> {
+pub(crate) fn cycles(bound: &Bound, uses: &Uses, versions: &Versions) -> Vec<Diagnostic> {
+    let dag = &explained(bound, uses, versions);
     let mut found: Vec<(PassId, Diagnostic)> = Vec::new();
     for component in tarjan_scc(dag) {
         let first = component.iter().filter_map(|node| pass_of(dag, *node)).min();
@@ -31,18 +68,15 @@ pub(crate) fn cycles(bound: &Bound, dag: &Dag) -> Vec<Diagnostic> {
     found.into_iter().map(|(_, diagnostic)| diagnostic).collect()
 }
 
-fn pass_of(dag: &Dag, node: NodeIndex) -> Option<PassId> {
-    match dag.node_weight(node) {
-        Some(Node::Pass(pass)) => Some(*pass),
-        _ => None,
-    }
+fn pass_of(dag: &Why, node: NodeIndex) -> Option<PassId> {
+    dag.node_weight(node).copied().flatten()
 }
 
 /// A link of a cycle: the earlier pass, the later pass, and why.
 type Link = (PassId, PassId, Dependency);
 
 /// A shortest cycle through `start` by breadth-first search; joins are left out.
-fn shortest(dag: &Dag, start: NodeIndex, component: &[NodeIndex]) -> Vec<Link> {
+fn shortest(dag: &Why, start: NodeIndex, component: &[NodeIndex]) -> Vec<Link> {
     let mut inside = vec![false; dag.node_count()];
     for node in component {
         inside[node.index()] = true;
@@ -83,7 +117,7 @@ fn shortest(dag: &Dag, start: NodeIndex, component: &[NodeIndex]) -> Vec<Link> {
     links
 }
 
-fn report(bound: &Bound, links: &[Link], component: &[NodeIndex], dag: &Dag) -> Diagnostic {
+fn report(bound: &Bound, links: &[Link], component: &[NodeIndex], dag: &Why) -> Diagnostic {
     let name = |pass: PassId| bound.steps[pass.index()].name.as_str();
     let resource = |why: &Dependency| why.resource.map_or("", |resource| bound.expanded.resources[resource.index()].name.as_str());
     let sentence = |(earlier, later, why): &Link| match why.reason {

@@ -8,7 +8,7 @@ use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 use std::ops::Range;
 
-use super::dag::{Dag, Node};
+use super::dag::Dag;
 use crate::allocate::model::{Model, Pool};
 use crate::expand::types::{PassId, ResourceId};
 use crate::lists::Lists;
@@ -39,24 +39,27 @@ pub struct Flow {
 impl Flow {
     /// The part of a graph that runs. The graph has no cycle.
     pub(crate) fn new(dag: &Dag, alive: &[bool], model: &Model) -> Flow {
-        let mut numbers: Vec<Option<u32>> = vec![None; dag.node_count()];
-        let mut passes = Vec::new();
+        let mut numbers = vec![u32::MAX; dag.node_count()];
+        let mut passes = Vec::with_capacity(dag.passes);
         let mut nodes = 0;
-        // Passes come first in the graph, too.
-        for (index, node) in dag.raw_nodes().iter().enumerate().filter(|(index, _)| alive[*index]) {
-            numbers[index] = Some(nodes);
+        for (index, number) in numbers.iter_mut().enumerate().filter(|(index, _)| alive[*index]) {
+            *number = nodes;
             nodes += 1;
-            if let Node::Pass(pass) = node.weight {
-                passes.push(pass);
+            if index < dag.passes {
+                passes.push(PassId(index as u32));
             }
         }
-        let number = |node: petgraph::graph::NodeIndex| numbers[node.index()];
-        let edges = dag.raw_edges().iter().filter_map(|edge| Some((number(edge.source())?, number(edge.target())?)));
-        let before = Lists::from_pairs(nodes as usize, edges.clone().map(|(from, to)| (to, from)));
-        let after = Lists::from_pairs(nodes as usize, edges);
+        let number = |node: u32| Some(numbers[node as usize]).filter(|number| *number != u32::MAX);
+        let edges: Vec<(u32, u32)> = dag.edges().filter_map(|(from, to)| Some((number(to)?, number(from)?))).collect();
+        let before = Lists::from_pairs(nodes as usize, edges.iter().copied());
+        // Turned around once, lists are ascending, and what comes twice lies side by side.
+        let mut after = before.inverted(nodes as usize);
+        after.dedup();
+        let before = after.inverted(nodes as usize);
 
         let mut items = vec![u32::MAX; model.touches.resource_count()];
-        let (mut resources, mut pools, mut bytes) = (Vec::new(), Vec::new(), Vec::new());
+        let most = items.len();
+        let (mut resources, mut pools, mut bytes) = (Vec::with_capacity(most), Vec::with_capacity(most), Vec::with_capacity(most));
         let mut touches = Lists::with_capacity(nodes as usize, 4 * passes.len());
         for pass in &passes {
             for resource in model.touches.of(*pass).iter().filter(|resource| model.is_transient(**resource as usize)) {
@@ -76,7 +79,7 @@ impl Flow {
         }
         let users = touches.inverted(resources.len());
         let mut flow = Flow { passes, before, after, touches, users, resources, pools, bytes, declared: Vec::new() };
-        flow.declared = flow.by_place();
+        flow.declared = if dag.in_order { (0..flow.passes.len() as u32).collect() } else { flow.by_place() };
         flow
     }
 

@@ -15,34 +15,42 @@ pub(crate) fn sink_and_hoist(flow: &Flow, bytes: &[u64], order: &[u32]) -> Vec<u
     Sweep::new(flow, bytes, false).run(sunk.iter())
 }
 
+/// How often an item is still to be touched.
+#[derive(Clone, Copy)]
+struct Item {
+    bytes: u64,
+    /// How many users are not placed yet.
+    left: u32,
+    begun: bool,
+}
+
+/// Instead of how much a node waits for, once it stands in the order.
+const PLACED: u32 = u32::MAX;
+
 struct Sweep<'a> {
     flow: &'a Flow,
-    bytes: &'a [u64],
     backwards: bool,
-    /// By node: how many of those that come first are not placed yet.
+    /// By node: how many of those that come first are not placed yet, or [`PLACED`].
     waits: Vec<u32>,
-    placed: Vec<bool>,
-    /// By item: how many users are not placed yet.
-    left: Vec<u32>,
-    begun: Vec<bool>,
+    items: Vec<Item>,
     /// Ready passes whose cost may have changed, and joins that are ready.
     open: Vec<u32>,
     order: Vec<u32>,
 }
 
 impl<'a> Sweep<'a> {
-    fn new(flow: &'a Flow, bytes: &'a [u64], backwards: bool) -> Sweep<'a> {
+    fn new(flow: &'a Flow, bytes: &[u64], backwards: bool) -> Sweep<'a> {
         let needs = if backwards { &flow.after } else { &flow.before };
         let waits: Vec<u32> = (0..flow.node_count()).map(|node| needs.of(node).len() as u32).collect();
+        let item = |(item, bytes): (usize, &u64)| Item { bytes: *bytes, left: flow.users.of(item).len() as u32, begun: false };
+        let mut open = Vec::with_capacity(flow.node_count());
+        open.extend((0..flow.node_count() as u32).filter(|node| waits[*node as usize] == 0));
         Sweep {
             flow,
-            bytes,
             backwards,
-            open: (0..flow.node_count() as u32).filter(|node| waits[*node as usize] == 0).collect(),
+            open,
             waits,
-            placed: vec![false; flow.node_count()],
-            left: (0..flow.bytes.len()).map(|item| flow.users.of(item).len() as u32).collect(),
-            begun: vec![false; flow.bytes.len()],
+            items: bytes.iter().enumerate().map(item).collect(),
             order: Vec::with_capacity(flow.passes.len()),
         }
     }
@@ -50,7 +58,7 @@ impl<'a> Sweep<'a> {
     fn run<'b>(mut self, order: impl Iterator<Item = &'b u32>) -> Vec<u32> {
         self.settle();
         for node in order {
-            if !self.placed[*node as usize] {
+            if self.waits[*node as usize] != PLACED {
                 self.place(*node);
                 self.settle();
             }
@@ -61,7 +69,7 @@ impl<'a> Sweep<'a> {
     /// Places what costs nothing.
     fn settle(&mut self) {
         while let Some(node) = self.open.pop() {
-            if !self.placed[node as usize] && (!self.flow.is_pass(node) || self.frees(node)) {
+            if self.waits[node as usize] != PLACED && (!self.flow.is_pass(node) || self.frees(node)) {
                 self.place(node);
             }
         }
@@ -70,35 +78,32 @@ impl<'a> Sweep<'a> {
     /// Whether fewer bytes are in use after a pass than before it.
     fn frees(&self, node: u32) -> bool {
         let (mut begins, mut ends) = (0u64, 0u64);
-        for item in self.flow.touches.of(node as usize).iter().map(|item| *item as usize) {
-            if !self.begun[item] {
-                begins = begins.saturating_add(self.bytes[item]);
-            }
-            if self.left[item] == 1 {
-                ends = ends.saturating_add(self.bytes[item]);
-            }
+        for Item { bytes, left, begun } in self.flow.touches.of(node as usize).iter().map(|item| self.items[*item as usize]) {
+            begins = begins.saturating_add(if begun { 0 } else { bytes });
+            ends = ends.saturating_add(if left == 1 { bytes } else { 0 });
         }
         ends > begins
     }
 
     fn place(&mut self, node: u32) {
         let flow = self.flow;
-        self.placed[node as usize] = true;
+        self.waits[node as usize] = PLACED;
         if flow.is_pass(node) {
             self.order.push(node);
         }
         for item in flow.touches.of(node as usize).iter().map(|item| *item as usize) {
-            self.left[item] -= 1;
-            let began = !std::mem::replace(&mut self.begun[item], true);
-            if began || self.left[item] == 1 {
-                let ready = flow.users.of(item).iter().filter(|user| self.waits[**user as usize] == 0 && !self.placed[**user as usize]);
-                self.open.extend(ready);
+            let Item { left, begun, .. } = &mut self.items[item];
+            *left -= 1;
+            let began = !std::mem::replace(begun, true);
+            if began || *left == 1 {
+                self.open.extend(flow.users.of(item).iter().filter(|user| self.waits[**user as usize] == 0));
             }
         }
         let later = if self.backwards { flow.before.of(node as usize) } else { flow.after.of(node as usize) };
         for later in later {
-            self.waits[*later as usize] -= 1;
-            if self.waits[*later as usize] == 0 {
+            let waits = &mut self.waits[*later as usize];
+            *waits -= 1;
+            if *waits == 0 {
                 self.open.push(*later);
             }
         }

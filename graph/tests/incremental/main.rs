@@ -48,7 +48,7 @@ fn plan_of(spec: &Spec) -> Option<Arc<Plan>> {
     let bound = spec.bound();
     let device = DeviceFacts { memory_budget: u64::MAX, ..DeviceFacts::webgpu_defaults() };
     let kept = retention(&bound);
-    let schedule = schedule(&bound, &kept.retained).0?;
+    let schedule = schedule(&bound, &kept.retained).ok()?;
     let spans = lifetimes(&bound, &schedule, kept.retained);
     let allocation = allocate(&bound, &schedule, &spans, &device).ok()?;
     Some(Arc::new(assemble(bound, schedule, spans, allocation, kept.for_inputs, "random", [64, 64])))

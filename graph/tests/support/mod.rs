@@ -271,13 +271,14 @@ pub struct Planned {
 impl Fixture {
     /// The schedule; panics on an error.
     pub fn schedule(&self) -> Schedule {
-        let (schedule, problems) = schedule(&self.bound, &retention(&self.bound).retained);
-        schedule.unwrap_or_else(|| panic!("{}", render(&problems, &self.sources, false)))
+        let scheduled = schedule(&self.bound, &retention(&self.bound).retained);
+        scheduled.unwrap_or_else(|problems| panic!("{}", render(&problems, &self.sources, false)))
     }
 
     /// The problems of scheduling, as text.
     pub fn problems(&self) -> String {
-        render(&schedule(&self.bound, &retention(&self.bound).retained).1, &self.sources, false)
+        let scheduled = schedule(&self.bound, &retention(&self.bound).retained);
+        render(&scheduled.map_or_else(|problems| problems, |schedule| schedule.warnings(&self.bound)), &self.sources, false)
     }
 
     /// Plans on a device.
