@@ -56,7 +56,7 @@ fn bad_input() -> Result<(), Failed> {
         fixed.iter().chain(&small).chain(more).map(|text| (*text).to_owned()).collect()
     };
     let cases: Vec<(Vec<String>, &[&str])> = vec![
-        (render("pipelines/pbrr.ron", scene, &[]), &["compile::missing-file", "pipelines/pbr.ron"]),
+        (render("pipelines/pbrr.ron", scene, &[]), &["load::missing-file", "pipelines/pbr.ron"]),
         (render(pbr, "scenes/none.gltf", &[]), &["scenes/none.gltf"]),
         (render(pbr, scene, &["--set", "tone_mapping=acse"]), &["expand::bad-set", "`aces`"]),
         (render(pbr, scene, &["--set", "exposur=1"]), &["expand::unknown-param", "did you mean `exposure`?"]),
@@ -97,9 +97,9 @@ fn wrong_paths() -> Result<(), Failed> {
     let cases: &[(&[&str], &[&str])] = &[
         (&["plan", cornell], &["compile::is-scene", "`scenes/cornell.ron` is a scene", "--scene", pbr]),
         (&["plan", pbr, "--scene", pbr], &["scene::is-pipeline", "`pipelines/pbr.ron` is a pipeline", cornell]),
-        (&["plan", "nope", "--scene", "nowhere"], &["there is no scene `nowhere`", cornell, "compile::missing-file", pbr]),
+        (&["plan", "nope", "--scene", "nowhere"], &["there is no scene `nowhere`", cornell, "load::missing-file", pbr]),
         (&["plan", pbr, "--scene", "scenes/cornel.ron"], &["scene::unreadable", "did you mean `scenes/cornell.ron`?"]),
-        (&["plan", "pipelines"], &["compile::missing-file", "it is a folder"]),
+        (&["plan", "pipelines"], &["load::missing-file", "it is a folder"]),
         (&["plan", pbr, "--set", "exposure=nan", "--set", "foo=1"], &["expand::bad-set", "expand::unknown-param"]),
         (&["plan", pbr, "--size", "4294967295x1"], &["expand::size-over-limit"]),
         (&["check", "scenes/none.ron"], &["scene::unreadable", cornell]),
