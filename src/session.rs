@@ -9,7 +9,7 @@ use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats, Gpu};
-use luminaire_scenes::publish::{PublishRequest, counts, publish, schema};
+use luminaire_scenes::publish::{PublishRequest, Published, counts, publish, schema};
 use luminaire_scenes::scene_file;
 use luminaire_scenes::world::World;
 
@@ -119,6 +119,37 @@ pub struct Session {
     recoveries: u64,
 }
 
+/// A plan, with the warnings of its compilation and the texts that they point into.
+struct Compiled {
+    plan: Arc<Plan>,
+    warnings: Vec<Diagnostic>,
+    sources: SourceMap,
+}
+
+fn compile_for(facts: &DeviceFacts, world: &mut World, request: &RenderRequest<'_>) -> Result<Compiled, Problems> {
+    let compilation = compile_pipeline(&CompileInput {
+        pipeline: request.pipeline,
+        files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
+        published: &schema(),
+        counts: &counts(world),
+        device: facts,
+        output: request.size,
+        sets: request.sets,
+        outputs: request.outputs,
+    });
+    let (warnings, sources) = (compilation.diagnostics, compilation.sources);
+    match compilation.plan {
+        Some(plan) => Ok(Compiled { plan: Arc::new(plan), warnings, sources }),
+        None => Err((warnings, sources)),
+    }
+}
+
+/// What the world publishes for a plan.
+fn publish_for(world: &mut World, plan: &Plan, camera: Option<&str>, facts: &DeviceFacts) -> Result<Published, Vec<Diagnostic>> {
+    let (views, draw_lists) = (&plan.views, &plan.draw_lists);
+    publish(world, &PublishRequest { camera, extent: plan.extent, views, draw_lists, max_texture_2d: facts.max_texture_2d })
+}
+
 impl Session {
     /// Compiles a pipeline for a world and an adapter, publishes the world, and creates everything on the GPU.
     pub fn new(world: &mut World, request: &RenderRequest<'_>) -> Result<Session, Problems> {
@@ -129,33 +160,11 @@ impl Session {
     /// The same on an adapter that the caller has chosen.
     pub fn on(adapter: &Adapter, world: &mut World, request: &RenderRequest<'_>) -> Result<Session, Problems> {
         let facts = adapter.facts();
-        let published = schema();
-        let counts = counts(world);
-        let compilation = compile_pipeline(&CompileInput {
-            pipeline: request.pipeline,
-            files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
-            published: &published,
-            counts: &counts,
-            device: &facts,
-            output: request.size,
-            sets: request.sets,
-            outputs: request.outputs,
-        });
-        let (mut diagnostics, sources) = (compilation.diagnostics, compilation.sources);
-        let Some(plan) = compilation.plan else { return Err((diagnostics, sources)) };
-        let plan = Arc::new(plan);
-        let publish_request = PublishRequest {
-            camera: request.camera,
-            extent: request.size,
-            views: &plan.views,
-            draw_lists: &plan.draw_lists,
-            max_texture_2d: facts.max_texture_2d,
-        };
-        let made = publish(world, &publish_request).and_then(|published_scene| {
-            diagnostics.extend(published_scene.warnings);
-            let scene = published_scene.scene;
+        let Compiled { plan, mut warnings, sources } = compile_for(&facts, world, request)?;
+        let made = publish_for(world, &plan, request.camera, &facts).and_then(|published| {
+            warnings.extend(published.warnings);
             let gpu = adapter.open(&plan.requirements, request.timing)?;
-            Executor::new(&gpu, Arc::clone(&plan), &published, Arc::new(scene))
+            Executor::new(&gpu, Arc::clone(&plan), &schema(), Arc::new(published.scene))
         });
         match made {
             Ok(executor) => Ok(Session {
@@ -163,15 +172,15 @@ impl Session {
                 adapter: adapter.clone(),
                 timing: request.timing,
                 recoveries: 0,
-                warnings: (diagnostics, sources),
+                warnings: (warnings, sources),
                 executor,
                 camera: request.camera.map(str::to_owned),
                 facts,
             }),
             Err(problems) => {
-                diagnostics.extend(problems);
-                debug_assert!(has_errors(&diagnostics));
-                Err((diagnostics, sources))
+                warnings.extend(problems);
+                debug_assert!(has_errors(&warnings));
+                Err((warnings, sources))
             }
         }
     }
@@ -206,15 +215,7 @@ impl Session {
 
     /// Takes the world's present state over. What did not change will not run again.
     pub fn update(&mut self, world: &mut World) -> Result<(), Problems> {
-        let plan = Arc::clone(&self.plan);
-        let request = PublishRequest {
-            camera: self.camera.as_deref(),
-            extent: plan.extent,
-            views: &plan.views,
-            draw_lists: &plan.draw_lists,
-            max_texture_2d: self.facts.max_texture_2d,
-        };
-        let updated = publish(world, &request).and_then(|published| {
+        let updated = publish_for(world, &self.plan, self.camera.as_deref(), &self.facts).and_then(|published| {
             let scene = Arc::new(published.scene);
             self.on_living_device(|executor| executor.update_scene(Arc::clone(&scene)))
         });
@@ -237,37 +238,29 @@ impl Session {
     }
 
     /// Compiles again, for a changed file, parameter, size or output, and turns to the new plan. What is the same stays held, and
-    /// pipelines that did not change are not built again. After an error the last good plan goes on.
+    /// pipelines that did not change are not built again; a plan that needs a feature which the device was opened without gets another
+    /// device, and runs everything. After an error the last good plan goes on.
     pub fn reload(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<(), Problems> {
-        let (published, counts) = (schema(), counts(world));
-        let compilation = compile_pipeline(&CompileInput {
-            pipeline: request.pipeline,
-            files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
-            published: &published,
-            counts: &counts,
-            device: &self.facts,
-            output: request.size,
-            sets: request.sets,
-            outputs: request.outputs,
-        });
-        let (diagnostics, sources) = (compilation.diagnostics, compilation.sources);
-        let Some(plan) = compilation.plan else { return Err((diagnostics, sources)) };
-        let plan = Arc::new(plan);
-        let publish_request = PublishRequest {
-            camera: request.camera,
-            extent: request.size,
-            views: &plan.views,
-            draw_lists: &plan.draw_lists,
-            max_texture_2d: self.facts.max_texture_2d,
-        };
-        let adopted = publish(world, &publish_request).and_then(|published| {
+        let Compiled { plan, mut warnings, sources } = compile_for(&self.facts, world, request)?;
+        let adopted = publish_for(world, &plan, request.camera, &self.facts).and_then(|published| {
+            warnings.extend(published.warnings);
             let scene = Arc::new(published.scene);
-            self.on_living_device(|executor| executor.adopt(Arc::clone(&plan), Arc::clone(&scene)))
+            let open = &self.executor.gpu().facts().features;
+            if plan.requirements.iter().all(|requirement| open.contains(&requirement.feature)) {
+                return self.on_living_device(|executor| executor.adopt(Arc::clone(&plan), Arc::clone(&scene)));
+            }
+            let gpu = self.adapter.open(&plan.requirements, self.timing)?;
+            self.executor = Executor::new(&gpu, Arc::clone(&plan), &schema(), scene)?;
+            Ok(())
         });
-        adopted.map_err(|problems| (problems, sources.clone()))?;
-        self.camera = request.camera.map(str::to_owned);
-        (self.plan, self.warnings) = (plan, (diagnostics, sources));
-        Ok(())
+        match adopted {
+            Ok(()) => {
+                self.camera = request.camera.map(str::to_owned);
+                (self.plan, self.warnings) = (plan, (warnings, sources));
+                Ok(())
+            }
+            Err(problems) => Err((problems, sources)),
+        }
     }
 
     /// Reads an output as a linear image.

@@ -196,6 +196,8 @@ fn check_and_plan() -> Result<(), Failed> {
         "check",
         "pipelines/albedo.ron",
         "pipelines/pbr.ron",
+        "pipelines/blocks/display.ron",
+        "pipelines/blocks/shadows.ron",
         "scenes/cornell.ron",
         "scenes/materials.ron",
         "shaders/pbr/light.wgsl",
@@ -203,7 +205,7 @@ fn check_and_plan() -> Result<(), Failed> {
     if output.status.code() != Some(0) {
         return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
     }
-    for format in ["text", "json", "dot"] {
+    for format in ["text", "json", "dot", "html"] {
         let output = run(&["plan", "pipelines/pbr.ron", "--format", format])?;
         if output.status.code() != Some(0) || output.stdout.is_empty() {
             return Err(format!("plan --format {format}: {}", String::from_utf8_lossy(&output.stderr)).into());
@@ -238,6 +240,41 @@ fn same_bytes_twice() -> Result<(), Failed> {
     if images[0] == images[1] { Ok(()) } else { Err("two runs gave different bytes".into()) }
 }
 
+/// A picture that settles is rendered until it does; one that never does needs a number of frames, and gets it.
+fn frames() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let path = |name: &str| folder.path().join(name).to_str().map(str::to_owned).ok_or("a path");
+    let (pipeline, out, stats) = (path("fade.ron")?, path("fade.png")?, path("stats.json")?);
+    let text = |run: &str| {
+        format!(
+            "(doc: \"Adds to itself.\", resources: {{\"color\": Texture(format: \"rgba8unorm\", clear: Zero)}}, passes: {{\"add\": Fullscreen(\
+             shader: \"add.wgsl\", run: {run}, blend: {{\"color\": Add}}, modify: {{\"color\": \"color\"}})}}, outputs: {{\"color\": \"color\"}})"
+        )
+    };
+    let shader = "struct Targets { color: vec4<f32> }\n@fragment fn add() -> Targets { return Targets(vec4<f32>(0.2)); }\n";
+    std::fs::write(path("add.wgsl")?, shader)?;
+    let render = ["render", &pipeline, "--scene", "scenes/cornell.ron", "-o", &out, "--size", "8x8", "--stats", &stats];
+    // When it runs, `--frames`, the value that comes out, and the frames that it takes: one more shows that it has settled.
+    for (run_kind, count, value, taken) in
+        [("Accumulate(3)", None, 153, 4), ("EveryFrame", Some("2"), 102, 2), ("Accumulate(3)", Some("2"), 102, 2)]
+    {
+        std::fs::write(&pipeline, text(run_kind))?;
+        let output = run(&[&render[..], &count.map_or(vec![], |count| vec!["--frames", count])].concat())?;
+        if output.status.code() != Some(0) {
+            return Err(String::from_utf8_lossy(&output.stderr).into_owned().into());
+        }
+        let pixel = image::open(&out)?.into_rgba8().get_pixel(3, 3).0;
+        let frames = serde_json::from_slice::<serde_json::Value>(&std::fs::read(&stats)?)?["frames"].as_u64();
+        if pixel != [value; 4] || frames != Some(taken) {
+            return Err(format!("{run_kind} with {count:?}: {pixel:?} after {frames:?} frames").into());
+        }
+    }
+    std::fs::write(&pipeline, text("EveryFrame"))?;
+    let output = run(&render)?;
+    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
+    if output.status.code() == Some(1) && errors.contains("--frames") { Ok(()) } else { Err(errors.into()) }
+}
+
 /// Broken models are refused with a message, and what is valid loads: `check` needs no GPU.
 fn broken_models() -> Result<(), Failed> {
     let assets = shared().ok_or("the reference data is missing")?.join("assets");
@@ -270,6 +307,7 @@ fn main() {
         trial("a missing adapter is explained", None, no_adapter),
         trial("check and plan need no adapter", None, check_and_plan),
         trial("the same command gives the same bytes", adapter, same_bytes_twice),
+        trial("images settle, or run for so many frames", adapter, frames),
         trial("broken models are refused", data, broken_models),
     ];
     libtest_mimic::run(&arguments, trials).exit();

@@ -169,3 +169,26 @@ fn what_means_nothing_runs_nothing() {
     with(&other, shaders, |input| harness.replan(input)).unwrap();
     assert!(harness.frame().is_empty(), "words for people");
 }
+
+/// What can't be made again is still there when somebody wants it in a way that nobody did before.
+#[test]
+fn late_readers_leave_what_was_gathered() {
+    let only = edited(
+        PIPELINE,
+        "\"summed\": Texture(",
+        "\"shown\": Texture(format: \"rgba16float\", size: Square(8)), \"looked\": Texture(format: \"rgba16float\", size: Square(8)), \"summed\": Texture(",
+    );
+    let only = edited(&only, "\"sum\": \"summed\"", "\"sum\": \"shown\"");
+    let copied = edited(&only, "\"other\": Clear(", "\"show\": Copy(read: \"summed\", write: \"shown\"), \"other\": Clear(");
+    let sampled = edited(
+        &copied,
+        "\"other\": Clear(",
+        "\"look\": Compute(shader: \"mix.wgsl\", entry: \"plain\", cover: \"looked\", read: {\"source\": \"summed\"}, write: {\"target_image\": \"looked\"}), \"other\": Clear(",
+    );
+    let sampled = edited(&sampled, "\"sum\": \"shown\"", "\"sum\": \"shown\", \"looked\": \"looked\"");
+    let shaders = [DRAW, MIX, SUM];
+    let mut harness = with(&copied, shaders, Harness::new).unwrap();
+    harness.settle(8).unwrap();
+    with(&sampled, shaders, |input| harness.replan(input)).unwrap();
+    assert_eq!(harness.frame(), ["look"]);
+}

@@ -18,7 +18,7 @@ use crate::device::DeviceFacts;
 use crate::diagnostic::Diagnostic;
 use crate::expand::types::{Dimension, ResourceId, Shape};
 use crate::lifetime::Lifetimes;
-use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, StepKind, Usage};
+use crate::plan::{Alone, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Retained, StepKind, Usage};
 use crate::schedule::Schedule;
 use extent::format_of;
 use model::Pool;
@@ -42,7 +42,7 @@ pub struct Allocation {
 
 /// Assigns memory to every resource that a scheduled pass uses. Fails, with all reasons, where a limit or the budget is exceeded.
 pub fn allocate(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, device: &DeviceFacts) -> Result<Allocation, Vec<Diagnostic>> {
-    let usages = usages(bound, schedule);
+    let usages = usages(bound, schedule, &lifetimes.retained);
     let problems = limits::resources(bound, &schedule.model, lifetimes, &usages, device);
     if !problems.is_empty() {
         return Err(problems);
@@ -108,7 +108,7 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
 }
 
 /// What the steps that run do to each resource, clears and the reading of outputs by the host included.
-fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
+fn usages(bound: &Bound, schedule: &Schedule, retained: &[Option<Retained>]) -> Vec<Usage> {
     let mut usages = schedule.model.usages.clone();
     let mut add = |resource: ResourceId, usage: Usage| {
         if let Some(entry) = usages.get_mut(resource.index()) {
@@ -131,6 +131,12 @@ fn usages(bound: &Bound, schedule: &Schedule) -> Vec<Usage> {
     }
     for initial in &schedule.initial_clears {
         add(initial.part.resource, clear(&initial.part));
+    }
+    // What keeps its content keeps it under plans that ask for more, as long as its memory can do what they ask for.
+    for (index, resource) in bound.expanded.resources.iter().enumerate().filter(|(index, _)| retained[*index].is_some()) {
+        let texture = matches!(resource.shape, Shape::Texture(_));
+        let usage = Usage { sampled: texture, copy_source: true, copy_target: !texture, ..Usage::default() };
+        add(ResourceId(index as u32), usage);
     }
     for output in &bound.expanded.outputs {
         // The host reads outputs back, and a viewer samples them.
