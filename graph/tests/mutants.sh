@@ -70,16 +70,19 @@ cargo test --quiet "${tests[@]}" > /dev/null || { echo "the tests fail without a
 
 # What runs before what, and what stays alive.
 mutant 'no edge from a reader to who destroys' schedule/dag.rs \
-    'edges.add(reader.pass.index(), destroyer.index(), Dependency { reason: Reason::Destroys, resource, span });' 'let _ = destroyer;'
+    'add(Edge { from: to, to: destroyer.0, reason: Reason::Destroys, resource, at });' 'let _ = destroyer;'
 mutant 'no edge from who remembers to writers' schedule/dag.rs \
-    'edges.add(recaller.pass.index(), later.pass.index(), Dependency { reason: Reason::Destroys, resource, span });' 'let _ = (later, span);'
-mutant 'no edge along modifiers' schedule/dag.rs 'edges.add(pair[0].pass.index(), pair[1].pass.index(), dependency);' 'let _ = dependency;'
+    'add(Edge { from: pass(*recaller), to: pass(later), reason: Reason::Destroys, resource, at: Some(*recaller) });' \
+    'let _ = (later, recaller);'
+mutant 'no edge along modifiers' schedule/dag.rs \
+    'add(Edge { from: pass(pair[0]), to: pass(pair[1]), reason: Reason::Value, resource, at: Some(pair[1]) });' 'let _ = pair;'
 mutant 'what is remembered is culled' schedule/cull.rs \
     '.take_while(|(recaller, _)| *recaller == node)' '.take_while(|(recaller, _)| *recaller == node).take(0)'
 
 # Who shares memory.
 mutant 'a retained resource shares' allocate/model.rs 'retained.iter().map(Option::is_some).collect()' 'retained.iter().map(|_| false).collect()'
-mutant 'a texture is taken a step early' allocate/textures.rs 'if end > start as usize {' 'if end > start as usize + 1 {'
+mutant 'a texture is taken a step early' allocate/textures.rs \
+    '(range.end as u32, index)' '((range.end as u32 - 1).max(range.start as u32 + 1), index)'
 mutant 'a buffer is taken a step early' allocate/strip.rs 'entry.steps.1 >= first' 'entry.steps.1 > first'
 mutant 'amortised content is not retained' dirty/retention.rs 'note(piece.resource, Retained::Amortised);' 'let _ = piece;'
 
@@ -120,7 +123,7 @@ mutant 'everything taken is made again' dirty/pull.rs \
 mutant 'declared values are never set again' dirty/pull.rs \
     'if self.tracker.held.declared[resource.index()] && !self.is_taken(resource) {' 'if self.tracker.held.declared.len() > resource.index() {'
 mutant 'declared values at the end are left out' execute.rs \
-    'frame.last_fills.iter().try_for_each(' 'frame.last_fills.iter().take(0).try_for_each('
+    'in &frame.last_fills {' 'in frame.last_fills.iter().take(0) {'
 
 # What the tracker remembers.
 mutant 'what was overwritten stays held' dirty/tracker.rs 'self.evict(other);' 'let _ = other;'
