@@ -188,7 +188,74 @@ fn late_readers_leave_what_was_gathered() {
     let sampled = edited(&sampled, "\"sum\": \"shown\"", "\"sum\": \"shown\", \"looked\": \"looked\"");
     let shaders = [DRAW, MIX, SUM];
     let mut harness = with(&copied, shaders, Harness::new).unwrap();
+    assert!(harness.is_retained("summed"), "it can't be made again, though nobody reads it alone");
     harness.settle(8).unwrap();
     with(&sampled, shaders, |input| harness.replan(input)).unwrap();
     assert_eq!(harness.frame(), ["look"]);
+}
+
+/// Edits may come faster than frames.
+#[test]
+fn plans_without_a_frame_between_them_forget_nothing() {
+    let shaders = [DRAW, MIX, SUM];
+    let mut harness = with(PIPELINE, shaders, Harness::new).unwrap();
+    harness.settle(8).unwrap();
+    let other = edited(PIPELINE, "\"gain\": 2", "\"gain\": 3");
+    for _ in 0..3 {
+        with(&other, shaders, |input| harness.replan(input)).unwrap();
+    }
+    assert_eq!(harness.frame(), ["mix"]);
+    let other = edited(&other, "value: Color(1.0, 0.0, 0.0, 1.0)", "value: Color(0.0, 0.0, 0.0, 1.0)");
+    with(&other, shaders, |input| harness.replan(input)).unwrap();
+    let again = edited(&other, "\"gain\": 3", "\"gain\": 4");
+    with(&again, shaders, |input| harness.replan(input)).unwrap();
+    assert_eq!(harness.frame(), ["mix", "other", "sum"]);
+}
+
+/// Bytes of one arena that another buffer had before.
+#[test]
+fn a_buffer_that_moves_within_its_arena_is_made_again() {
+    const FILL: &str = "
+var<storage, read_write> numbers: array<u32>;
+@compute @workgroup_size(8) fn fill(@builtin(global_invocation_id) id: vec3<u32>) { numbers[id.x] = id.x; }
+";
+    const SHOW: &str = "
+var<storage, read> one: array<u32>;
+var<storage, read> two: array<u32>;
+var texels: texture_storage_2d<r32float, write>;
+@compute @workgroup_size(8, 8) fn show(@builtin(global_invocation_id) id: vec3<u32>) {
+    textureStore(texels, id.xy, vec4(f32(one[id.x] + two[id.x])));
+}
+";
+    let make = |name: &str| format!("\"make_{name}\": Compute(shader: \"draw.wgsl\", count: 8, write: {{\"numbers\": \"{name}\"}}), ");
+    let show = |from: [&str; 2], to: &str| {
+        let [one, two] = from;
+        format!(
+            "\"show_{to}\": Compute(shader: \"mix.wgsl\", cover: \"{to}\", read: {{\"one\": \"{one}\", \"two\": \"{two}\"}}, write: {{\"texels\": \"{to}\"}}), "
+        )
+    };
+    let pipeline = |buffers: &str, passes: &str, outputs: &[&str]| {
+        let textures: String = outputs.iter().map(|name| format!("\"{name}\": Texture(format: \"r32float\", size: Square(8)), ")).collect();
+        let outputs: String = outputs.iter().map(|name| format!("\"{name}\": \"{name}\", ")).collect();
+        format!("(doc: \"Buffers.\", resources: {{{buffers}{textures}}}, passes: {{{passes}}}, outputs: {{{outputs}}})")
+    };
+    // Three quarters of a KiB each time, of which `b` has the end, and then the start.
+    let passes = make("a") + &make("b") + &show(["a", "b"], "x");
+    let first = pipeline("\"a\": Buffer(size: 512), \"b\": Buffer(size: 256), ", &passes, &["x"]);
+    let passes = make("b") + &make("c") + &make("d") + &show(["b", "c"], "x") + &show(["b", "d"], "y") + &show(["c", "d"], "z");
+    let buffers = ["b", "c", "d"].map(|name| format!("\"{name}\": Buffer(size: 256), ")).concat();
+    let second = pipeline(&buffers, &passes, &["x", "y", "z"]);
+    let shaders = [FILL, SHOW, SUM];
+    let mut harness = with(&first, shaders, Harness::new).unwrap();
+    assert_eq!(harness.frame().len(), 3);
+    let arena = |harness: &Harness| {
+        let resource = harness.plan().resources.iter().find(|resource| resource.name == "b").unwrap();
+        let placement = resource.placement.unwrap();
+        (placement.offset, harness.plan().memories[placement.memory.index()].bytes)
+    };
+    let before = arena(&harness);
+    with(&second, shaders, |input| harness.replan(input)).unwrap();
+    let after = arena(&harness);
+    assert!(before.0 != after.0 && before.1 == after.1, "{before:?} and {after:?}");
+    assert!(harness.frame().contains(&"make_b".to_owned()));
 }

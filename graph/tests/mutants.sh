@@ -17,7 +17,7 @@ only=${1:-}
 export INCREMENTAL_CASES=${CASES:-1000}
 export PROPTEST_RNG_SEED=${SEED:-1}
 export CARGO_PROFILE_DEV_OPT_LEVEL=${OPT:-0}
-tests=(-p luminaire-graph --test incremental --test planning_properties)
+tests=(-p luminaire-graph --test incremental --test planning_properties --test lessons)
 
 copy=$(mktemp -d)
 trap 'rm -rf "$copy"' EXIT
@@ -152,7 +152,6 @@ mutant 'other makers of what is read go unnoticed' dirty/adopt.rs \
     'same && signature(&self.flow, &old_keys, *old) == signature(&new.flow, &new_keys, node as u32)' 'same'
 mutant 'what never ran counts as run' dirty/adopt.rs \
     'let Some(old) = old.filter(|old| !self.fresh.contains(old)) else { continue };' 'let Some(old) = *old else { continue };'
-mutant 'histories forget that the past is gone' dirty/adopt.rs 'new.recall_first(resource);' 'let _ = resource;'
 mutant 'a remade past goes unnoticed' dirty/adopt.rs 'if remade {' 'if remade && new.flow.nodes.is_empty() {'
 mutant 'turns are forgotten' dirty/adopt.rs 'turns.insert(new.flow.unit_of[node as usize], *turn);' 'let _ = turn;'
 

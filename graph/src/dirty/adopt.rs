@@ -256,9 +256,6 @@ impl Tracker {
             if old.is_some_and(|(old, _)| self.first.contains(&old)) {
                 new.first.insert(resource);
             }
-            if past == Remembered::Gone && old.is_some_and(|(_, before)| before != Remembered::Gone) {
-                new.recall_first(resource);
-            }
             // The overlap of another extent is not yet what the resource holds now.
             let shape = new.carried.get(&planned_name);
             if past == Remembered::Carried && shape.is_some_and(|shape| !same_shape(shape, &new.plan.resources[resource.index()].shape)) {
