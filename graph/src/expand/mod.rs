@@ -24,7 +24,8 @@ use crate::diagnostic::{Diagnostic, has_errors};
 use crate::published::SceneCounts;
 use crate::validate::types::Validated;
 use environment::Environment;
-use types::{Expanded, Output};
+use passes::Unrolled;
+use types::Expanded;
 
 /// What the values of expressions depend on.
 #[derive(Debug, Clone, Copy)]
@@ -54,16 +55,9 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
         return Err(environment.problems);
     };
     histories::resources(&validated.histories, &validated.resources, &mut resources);
-    let (mut passes, spreads) = passes::passes(&mut environment, validated, &resources);
+    let asked = |name: &str| input.outputs.is_none_or(|asked| asked.iter().any(|other| other == name));
+    let Unrolled { mut passes, spreads, mut outputs } = passes::passes(&mut environment, validated, &resources, asked);
     histories::passes(&validated.histories, &resources, &mut passes);
-    let mut outputs = Vec::new();
-    for (name, part) in &validated.outputs {
-        if input.outputs.is_none_or(|asked| asked.contains(&name.value))
-            && let Some(part) = passes::reference(&mut environment, &resources, part, "outputs")
-        {
-            outputs.push(Output { name: name.value.clone(), part });
-        }
-    }
     for asked in input.outputs.into_iter().flatten() {
         if !validated.outputs.iter().any(|(name, _)| name.value == *asked) {
             let known = validated.outputs.iter().map(|(name, _)| name.value.clone()).collect();
@@ -72,7 +66,7 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     }
     let retained_budget = validated.retained_budget.as_ref().and_then(|budget| environment.mebibytes(budget));
     if !has_errors(&environment.problems) {
-        modifiers::order(&mut environment, &resources, &mut passes);
+        modifiers::order(&mut environment, &resources, &mut passes, &mut outputs);
         rules::check(&mut environment, validated, &resources, &passes);
     }
     let Environment { params, problems, .. } = environment;

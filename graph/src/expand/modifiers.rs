@@ -8,11 +8,11 @@ use std::collections::{BTreeMap, BinaryHeap};
 
 use super::environment::Environment;
 use super::error::ExpandError;
-use super::types::{Pass, PassId, Resource, ResourceId};
+use super::types::{Output, Pass, PassId, Resource, ResourceId};
 use super::writers::Writers;
 
 /// Brings passes of different lists in the order that `after` says, and reports modifiers that nothing orders.
-pub(super) fn order(environment: &mut Environment<'_>, resources: &[Resource], passes: &mut Vec<Pass>) {
+pub(super) fn order(environment: &mut Environment<'_>, resources: &[Resource], passes: &mut Vec<Pass>, outputs: &mut [Output]) {
     let first = passes.first().map_or(0, |pass| pass.list);
     if passes.iter().all(|pass| pass.list == first) {
         return;
@@ -22,7 +22,7 @@ pub(super) fn order(environment: &mut Environment<'_>, resources: &[Resource], p
     if passes.iter().enumerate().any(backwards)
         && let Some(order) = sorted(passes)
     {
-        rearrange(passes, &order);
+        rearrange(passes, outputs, &order);
     }
     let writers = Writers::new(resources, passes);
     for (index, pass) in passes.iter().enumerate() {
@@ -73,7 +73,7 @@ fn sorted(passes: &[Pass]) -> Option<Vec<PassId>> {
 }
 
 /// Moves passes to their places, and every id with them.
-fn rearrange(passes: &mut Vec<Pass>, order: &[PassId]) {
+fn rearrange(passes: &mut Vec<Pass>, outputs: &mut [Output], order: &[PassId]) {
     let mut places = vec![PassId(0); passes.len()];
     for (place, id) in order.iter().enumerate() {
         places[id.index()] = PassId(place as u32);
@@ -85,6 +85,7 @@ fn rearrange(passes: &mut Vec<Pass>, order: &[PassId]) {
         let slots = pass.reads.iter_mut().chain(&mut pass.writes).chain(&mut pass.modifies).map(|slot| &mut slot.part);
         slots.chain(iterations).filter_map(|part| part.version.as_mut()).for_each(moved);
     }
+    outputs.iter_mut().filter_map(|output| output.part.version.as_mut()).for_each(moved);
     let mut taken: Vec<Option<Pass>> = std::mem::take(passes).into_iter().map(Some).collect();
     passes.extend(order.iter().filter_map(|id| taken[id.index()].take()));
 }

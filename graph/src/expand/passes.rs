@@ -7,7 +7,7 @@ use std::sync::Arc;
 
 use super::environment::Environment;
 use super::error::ExpandError;
-use super::types::{Element, Indices, Located, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Spread, Value, Work};
+use super::types::{Element, Indices, Located, Output, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Spread, Value, Work};
 use crate::published::ViewKind;
 use crate::source::FileId;
 use crate::validate::types::{BlockDecl, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, Validated, View, WorkDecl};
@@ -16,8 +16,20 @@ use crate::validate::without_indices;
 /// Pipelines longer than this are refused.
 pub const MAX_PASSES: usize = 100_000;
 
-/// Unrolls everything.
-pub(super) fn passes(environment: &mut Environment<'_>, validated: &Validated, resources: &[Resource]) -> (Vec<Pass>, Vec<Spread>) {
+/// What a pipeline comes to when everything is unrolled.
+pub(super) struct Unrolled {
+    pub passes: Vec<Pass>,
+    pub spreads: Vec<Spread>,
+    pub outputs: Vec<Output>,
+}
+
+/// Unrolls everything. `asked` says which outputs are wanted.
+pub(super) fn passes(
+    environment: &mut Environment<'_>,
+    validated: &Validated,
+    resources: &[Resource],
+    asked: impl Fn(&str) -> bool,
+) -> Unrolled {
     let (passes, pending, spreads, elements, after, lists, block) = Default::default();
     let mut unroller = Unroller {
         environment,
@@ -35,8 +47,16 @@ pub(super) fn passes(environment: &mut Environment<'_>, validated: &Validated, r
         full: false,
     };
     unroller.items(&validated.items, "");
+    let (mut outputs, mut versions) = (Vec::new(), Vec::new());
+    for (name, part) in validated.outputs.iter().filter(|(name, _)| asked(&name.value)) {
+        if let Some(found) = unroller.part(part, "outputs") {
+            versions.extend(part.version.as_ref().map(|version| (outputs.len(), unroller.seen(version, ""))));
+            outputs.push(Output { name: name.value.clone(), part: found });
+        }
+    }
     let spreads = std::mem::take(&mut unroller.spreads);
-    (unroller.resolve(), spreads)
+    let passes = unroller.resolve(&mut outputs, versions);
+    Unrolled { passes, spreads, outputs }
 }
 
 /// A path of a pass, and where it is seen from.
@@ -270,11 +290,12 @@ impl Unroller<'_, '_> {
     }
 
     /// Turns names of passes into ids.
-    fn resolve(mut self) -> Vec<Pass> {
+    fn resolve(mut self, outputs: &mut [Output], versions: Vec<(usize, Seen)>) -> Vec<Pass> {
         // By name without indices, so that a loop's passes are found together, and by the names of all that is around. Only built
         // where something refers to passes.
         let mut by_plain_name: HashMap<String, Vec<PassId>> = HashMap::new();
-        if self.pending.iter().any(|pending| !pending.after.is_empty() || !pending.versions.is_empty()) {
+        let refers = |pending: &Pending| !pending.after.is_empty() || !pending.versions.is_empty();
+        if !versions.is_empty() || self.pending.iter().any(refers) {
             for (index, pass) in self.passes.iter().enumerate() {
                 let plain = without_indices(&pass.name);
                 for (end, _) in plain.match_indices('.').chain([(plain.len(), "")]) {
@@ -289,26 +310,34 @@ impl Unroller<'_, '_> {
                 self.passes[index].after.extend(found);
             }
             for (slot, seen) in pending.versions {
-                let found = find(&self.passes, &by_plain_name, &seen, false);
-                let Located { value: path, span } = seen.path;
-                match found.as_slice() {
-                    [only] => {
-                        let pass = &mut self.passes[index];
-                        if let Some(slot) = pass.reads.get_mut(slot) {
-                            slot.part.version = Some(*only);
-                        }
-                        for iteration in pass.batch.iter_mut().flat_map(|batch| &mut batch.iterations) {
-                            if let Some(part) = iteration.parts.get_mut(slot) {
-                                part.version = Some(*only);
-                            }
-                        }
+                let Some(version) = self.version(&by_plain_name, seen) else { continue };
+                let pass = &mut self.passes[index];
+                if let Some(slot) = pass.reads.get_mut(slot) {
+                    slot.part.version = Some(version);
+                }
+                for iteration in pass.batch.iter_mut().flat_map(|batch| &mut batch.iterations) {
+                    if let Some(part) = iteration.parts.get_mut(slot) {
+                        part.version = Some(version);
                     }
-                    [] => self.environment.report(ExpandError::AbsentPass { path, span }),
-                    many => self.environment.report(ExpandError::AmbiguousPass { path, count: many.len(), span }),
                 }
             }
         }
+        for (output, seen) in versions {
+            outputs[output].part.version = self.version(&by_plain_name, seen);
+        }
         self.passes
+    }
+
+    /// The one pass that a version names.
+    fn version(&mut self, by_plain_name: &HashMap<String, Vec<PassId>>, seen: Seen) -> Option<PassId> {
+        let found = find(&self.passes, by_plain_name, &seen, false);
+        let Located { value: path, span } = seen.path;
+        match found.as_slice() {
+            [only] => return Some(*only),
+            [] => self.environment.report(ExpandError::AbsentPass { path, span }),
+            many => self.environment.report(ExpandError::AmbiguousPass { path, count: many.len(), span }),
+        }
+        None
     }
 }
 

@@ -90,6 +90,10 @@ fn check_document(scope: &mut Scope<'_>) {
             let ambiguous = ValidateError::Ambiguous { name: name.value.clone(), first: "a block", second: "a pass", span: pass.span };
             scope.report(ambiguous);
         }
+        if ["output", "scene"].contains(&name.value.as_str()) {
+            let rule = "expressions have `output.width` and `scene.NAME` for the image and the scene";
+            scope.report(ValidateError::BadName { name: name.value.clone(), rule, span: name.span });
+        }
         names.push((name, "a block"));
     }
     for (index, (name, second)) in names.iter().enumerate().skip(document.resources.len()) {

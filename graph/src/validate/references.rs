@@ -13,6 +13,10 @@ use crate::syntax::document::{Entries, PassDoc, Text};
 
 /// Begins a reference to what a resource held at the end of the frame before.
 const PREVIOUS: &str = "previous(";
+/// A reference may stand for so many parts, depending on which blocks stand.
+const MAX_MEANINGS: usize = 64;
+/// References that lead to others through more files than this are refused.
+const MAX_STEPS: usize = 128;
 /// Why something can't be done with the past.
 const ONLY_READ: (&str, &str) = ("it is the past, which can only be read", "a Copy can keep it: `Copy(read: \"previous(x)\", write: ..)`");
 
@@ -174,6 +178,11 @@ impl<'a> Scope<'a> {
                 let instead = self.follow(instance.parent, instead, span)?;
                 // Blocks around come first: where they don't stand, neither does this one.
                 part.otherwise.insert(0, Otherwise { block: self.current, part: instead });
+                if meanings(&part) > MAX_MEANINGS {
+                    let reason = format!("it stands for more than {MAX_MEANINGS} things, depending on which blocks stand");
+                    self.report(ValidateError::BadReference { text: name.to_owned(), reason, span });
+                    return None;
+                }
             }
             return Some(part);
         }
@@ -210,6 +219,11 @@ impl<'a> Scope<'a> {
         let step = (instance, text.value.clone());
         if self.following.contains(&step) {
             let reason = "following it leads back to itself".to_owned();
+            self.report(ValidateError::BadReference { text: text.value.clone(), reason, span: text.span });
+            return None;
+        }
+        if self.following.len() >= MAX_STEPS {
+            let reason = format!("it leads through more than {MAX_STEPS} inputs and outputs of blocks");
             self.report(ValidateError::BadReference { text: text.value.clone(), reason, span: text.span });
             return None;
         }
@@ -299,6 +313,11 @@ fn select(part: &mut PartExpr, kind: Selector, index: &PlacedExpr) -> bool {
     let free = target.is_none();
     *target = Some(index.clone());
     free && part.otherwise.iter_mut().all(|otherwise| select(&mut otherwise.part, kind, index))
+}
+
+/// How many parts a reference may stand for.
+fn meanings(part: &PartExpr) -> usize {
+    1 + part.otherwise.iter().map(|otherwise| meanings(&otherwise.part)).sum::<usize>()
 }
 
 /// All of a resource.
