@@ -31,11 +31,11 @@ fn pipeline(blocks: &str, shown: &str) -> String {
 }
 
 /// Compiles within the stack that a thread has by default.
-fn compiled(files: MemoryFiles) -> Compilation {
+fn compiled(files: &MemoryFiles) -> Compilation {
     let start = Instant::now();
     let compilation = compile(&CompileInput {
         pipeline: "it.ron",
-        files: &files,
+        files,
         published: &PublishedSchema::default(),
         counts: &SceneCounts::default(),
         device: &DeviceFacts::webgpu_defaults(),
@@ -55,7 +55,7 @@ fn chain(length: usize, usage: &str) -> Compilation {
         write!(blocks, "\"b{index}\": (file: \"through.ron\", inputs: {{\"light\": \"{before}\"}}{usage}), ").unwrap();
     }
     let text = pipeline(&blocks, &format!("b{}.light", length - 1));
-    compiled(MemoryFiles::default().with(FileKind::Pipeline, "it.ron", &text).with(FileKind::Pipeline, "through.ron", THROUGH))
+    compiled(&MemoryFiles::default().with(FileKind::Pipeline, "it.ron", &text).with(FileKind::Pipeline, "through.ron", THROUGH))
 }
 
 fn codes(compilation: &Compilation) -> Vec<&'static str> {
@@ -100,7 +100,7 @@ fn blocks_of_blocks() {
             &text,
         );
     }
-    assert_eq!(codes(&compiled(files)), ["load::too-many-blocks"]);
+    assert_eq!(codes(&compiled(&files)), ["load::too-many-blocks"]);
 
     let mut files = MemoryFiles::default();
     for depth in 0..20 {
@@ -108,5 +108,5 @@ fn blocks_of_blocks() {
         let name = if depth == 0 { "it.ron".to_owned() } else { format!("g{depth}.ron") };
         files = files.with(FileKind::Pipeline, &name, &pipeline(&blocks, "light"));
     }
-    assert_eq!(codes(&compiled(files)), ["load::too-deep"]);
+    assert_eq!(codes(&compiled(&files)), ["load::too-deep"]);
 }
