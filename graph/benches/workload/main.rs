@@ -75,10 +75,12 @@ fn main() {
         let mut outputs = vec![false; declared.resources.len()];
         declared.outputs.iter().for_each(|name| outputs[ids(name)] = true);
 
-        let planned = ours::plan(&declared);
-        let bound_graph = ours::bound(&declared);
+        let (bound_graph, planned) = ours::plan(&declared);
         let (compile, bound_to_plan) = (median_us(|| ours::plan(&declared)), median_us(|| ours::plan_of(&bound_graph)));
-        let placing = median_us(|| ours::plan(&declared).placed());
+        let placing = median_us(|| {
+            let (bound, planned) = ours::plan(&declared);
+            (planned.placed(), bound, planned)
+        });
         let heap = planned.placed();
         let order: Vec<usize> = heap.order.iter().map(|pass| pass.index()).collect();
         let (bound, none) = peak_and_sum(&declared, &order, &outputs, &ids);

@@ -24,9 +24,11 @@ pub struct Ours {
     allocation: Allocation,
 }
 
-/// From declarations to an order and memory.
-pub fn plan(declared: &Declared) -> Ours {
-    plan_of(&bound(declared))
+/// From declarations to an order and memory. What binding makes comes along: it becomes a part of the plan, and is not freed.
+pub fn plan(declared: &Declared) -> (Bound, Ours) {
+    let bound = bound(declared);
+    let ours = plan_of(&bound);
+    (bound, ours)
 }
 
 /// From what binding makes to an order and memory.
@@ -103,7 +105,7 @@ fn resource(declared: &DeclaredResource, formats: &[(&str, Format)]) -> Resource
 }
 
 /// What binding would make of it.
-pub fn bound(declared: &Declared) -> Bound {
+fn bound(declared: &Declared) -> Bound {
     let formats = formats();
     let resources: Vec<Resource> = declared.resources.iter().map(|declared| resource(declared, &formats)).collect();
     let ids: HashMap<&str, u32> = resources.iter().enumerate().map(|(index, resource)| (resource.name.as_str(), index as u32)).collect();
