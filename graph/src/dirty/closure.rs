@@ -21,6 +21,10 @@ pub(super) struct Reached {
     open: Vec<u32>,
     /// Sources that changed, with the cycle of the maker; twice, if by makers of two cycles.
     sources: Marks<(u32, bool)>,
+    /// Cycles with amortised nodes that a change from outside reached.
+    cycles: Marks,
+    /// Amortised nodes that start anew.
+    restarted: Marks,
     /// Nodes that run.
     running: Vec<u32>,
     pulled: Pulled,
@@ -32,6 +36,8 @@ impl Reached {
         Reached {
             due: Marks::new(flow.nodes.len()),
             sources: Marks::new(flow.sources.len()),
+            cycles: Marks::new(flow.nodes.len()),
+            restarted: Marks::new(flow.nodes.len()),
             pulled: Pulled::new(flow, plan),
             ..Reached::default()
         }
@@ -41,6 +47,8 @@ impl Reached {
         self.due.clear();
         self.open.clear();
         self.sources.clear();
+        self.cycles.clear();
+        self.restarted.clear();
         self.running.clear();
     }
 }
@@ -50,10 +58,6 @@ pub(super) struct Closure<'a> {
     tracker: &'a Tracker,
     flow: &'a Flow,
     reached: &'a mut Reached,
-    /// Cycles with amortised nodes that a change from outside reached.
-    cycles: BTreeSet<u32>,
-    /// Amortised nodes that start anew.
-    restarted: BTreeSet<u32>,
     /// Units of spread loops that a change reached.
     called: BTreeSet<u32>,
 }
@@ -61,7 +65,7 @@ pub(super) struct Closure<'a> {
 impl<'a> Closure<'a> {
     pub(super) fn new(tracker: &'a Tracker, reached: &'a mut Reached) -> Closure<'a> {
         reached.clear();
-        Closure { tracker, flow: &tracker.flow, reached, cycles: BTreeSet::new(), restarted: BTreeSet::new(), called: BTreeSet::new() }
+        Closure { tracker, flow: &tracker.flow, reached, called: BTreeSet::new() }
     }
 
     /// Everything that runs.
@@ -111,7 +115,7 @@ impl<'a> Closure<'a> {
     fn enter(&mut self, node: u32) {
         let cycle = self.flow.cycle_of[node as usize];
         let members = self.flow.amortised.of(cycle as usize);
-        if !members.is_empty() && self.cycles.insert(cycle) {
+        if !members.is_empty() && self.reached.cycles.insert(cycle, ()) {
             for member in members {
                 self.restart(*member);
             }
@@ -131,13 +135,13 @@ impl<'a> Closure<'a> {
     fn restart(&mut self, node: u32) {
         match self.flow.nodes[node as usize].run {
             Run::Accumulate(count) => {
-                self.restarted.insert(node);
+                self.reached.restarted.insert(node, ());
                 if count > 0 {
                     self.change(node, Why::Accumulates);
                 }
             }
             Run::Spread { .. } => {
-                self.restarted.insert(node);
+                self.reached.restarted.insert(node, ());
                 self.called.insert(self.flow.unit_of[node as usize]);
             }
             Run::OnChange | Run::EveryFrame => {}
@@ -212,8 +216,9 @@ impl<'a> Closure<'a> {
     /// From what changes to what runs, as steps in order.
     fn finish(self) -> Frame {
         let tracker = self.tracker;
-        let Reached { due, running, pulled, .. } = &mut *self.reached;
+        let Reached { due, restarted, running, pulled, .. } = &mut *self.reached;
         due.sort();
+        restarted.sort();
         let mut pull = Pull::new(tracker, pulled);
         for node in due.marked() {
             pull.run(*node);
@@ -225,12 +230,12 @@ impl<'a> Closure<'a> {
         let mut frame = Frame {
             runs: Vec::with_capacity(running.len()),
             changed: due.marked().to_vec(),
-            restarted: self.restarted.iter().copied().collect(),
+            restarted: restarted.marked().to_vec(),
             units,
             ..Frame::default()
         };
         let accumulated = |node: u32| match self.flow.nodes[node as usize].run {
-            Run::Accumulate(_) if !self.restarted.contains(&node) => tracker.gathered.get(&node).copied().unwrap_or(0),
+            Run::Accumulate(_) if !restarted.contains(node) => tracker.gathered.get(&node).copied().unwrap_or(0),
             _ => 0,
         };
         for node in running.iter().copied() {

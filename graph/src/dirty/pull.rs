@@ -6,7 +6,7 @@
 //!
 //! Only memories that several resources live in are looked at: what has its own is there until it is written again.
 
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::flow::Flow;
 use super::marks::Marks;
@@ -33,6 +33,8 @@ pub(super) struct Pulled {
     needed: Marks,
     /// Resources that are written.
     written: Marks,
+    /// Resources whose declared values have to be set again.
+    fills: Marks,
     /// By memory; those that are not empty are marked.
     memories: Vec<Memory>,
     touched: Marks,
@@ -53,6 +55,7 @@ impl Pulled {
             open: Vec::new(),
             needed: Marks::new(flow.sources.len()),
             written: Marks::new(plan.resources.len()),
+            fills: Marks::new(plan.resources.len()),
             memories: vec![Memory::default(); plan.memories.len()],
             touched: Marks::new(plan.memories.len()),
         }
@@ -63,6 +66,7 @@ impl Pulled {
         self.open.clear();
         self.needed.clear();
         self.written.clear();
+        self.fills.clear();
         for memory in self.touched.marked() {
             let Memory { written, relied } = &mut self.memories[*memory as usize];
             written.clear();
@@ -81,8 +85,6 @@ pub(super) struct Pull<'a> {
     tracker: &'a Tracker,
     flow: &'a Flow,
     pulled: &'a mut Pulled,
-    /// Resources whose declared values have to be set again.
-    fills: BTreeSet<ResourceId>,
     /// Whether outputs and histories are asked for what they show.
     ends: bool,
 }
@@ -90,7 +92,7 @@ pub(super) struct Pull<'a> {
 impl<'a> Pull<'a> {
     pub(super) fn new(tracker: &'a Tracker, pulled: &'a mut Pulled) -> Pull<'a> {
         pulled.clear();
-        Pull { tracker, flow: &tracker.flow, pulled, fills: BTreeSet::new(), ends: false }
+        Pull { tracker, flow: &tracker.flow, pulled, ends: false }
     }
 
     /// The units that run, rising.
@@ -194,7 +196,7 @@ impl<'a> Pull<'a> {
     }
 
     fn set_declared(&mut self, resource: ResourceId) {
-        if self.fills.insert(resource) {
+        if self.pulled.fills.insert(resource.0, ()) {
             self.write(resource);
         }
     }
@@ -249,13 +251,14 @@ impl<'a> Pull<'a> {
     }
 
     /// Enters declared values before the first step that touches their resource, or at the end.
-    pub(super) fn fill(&self, frame: &mut Frame) {
+    pub(super) fn fill(&mut self, frame: &mut Frame) {
         let held = &self.tracker.held;
         let mut wanted: BTreeMap<ResourceId, Vec<(PartView, ClearValue)>> = BTreeMap::new();
-        for resource in &self.fills {
+        self.pulled.fills.sort();
+        frame.filled = self.pulled.fills.marked().to_vec();
+        for resource in frame.filled.iter().map(|resource| ResourceId(*resource)) {
             let rects = &self.flow.unmade[resource.index()];
-            wanted.entry(*resource).or_default().extend(self.tracker.fills_of(*resource, rects));
-            frame.filled.push(resource.0);
+            wanted.entry(resource).or_default().extend(self.tracker.fills_of(resource, rects));
         }
         for piece in &held.unheld_amortised {
             let entry = &self.flow.pieces[*piece as usize];
