@@ -29,7 +29,7 @@ fn plan_text(pipeline: &str, counts: &SceneCounts) -> String {
     assert!(problems.is_empty(), "{pipeline}:\n{problems}");
     let plan = compilation.plan.expect("a plan where there are no problems");
     let mut recorder = execute::record::Recorder::default();
-    let tracker = Tracker::new(Arc::new(plan.clone()));
+    let mut tracker = Tracker::new(Arc::new(plan.clone()));
     let frame = tracker.frame(&vec![0; plan.inputs.len()]);
     execute::prepare(&plan, &[], &mut recorder).expect("the recorder takes everything");
     execute::execute(&plan, &frame, &mut recorder).expect("the recorder takes everything");

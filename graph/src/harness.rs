@@ -89,12 +89,13 @@ impl Harness {
     }
 
     /// For each input, the passes that would run in the next frame if it alone changed.
-    pub fn reach(&self) -> Vec<(String, Vec<String>)> {
+    pub fn reach(&mut self) -> Vec<(String, Vec<String>)> {
         let mut revisions = self.revisions.clone();
         let mut reach = Vec::new();
         for (index, name) in self.inputs().into_iter().enumerate() {
             revisions[index] += 1;
-            reach.push((name, self.names(&self.tracker.frame(&revisions))));
+            let frame = self.tracker.frame(&revisions);
+            reach.push((name, self.names(&frame)));
             revisions[index] -= 1;
         }
         reach

@@ -121,14 +121,15 @@ mutant 'content that was taken counts as held' dirty/pull.rs \
 mutant 'later takers are not noticed' dirty/pull.rs \
     'filter(|(held, ..)| self.takes(resource, *held)).collect();' 'filter(|(held, ..)| self.takes(*held, *held)).collect();'
 mutant 'everything taken is made again' dirty/pull.rs \
-    'writer != held && start(writer) < start(held) && overlap(plan, writer, held)' 'writer != held && start(writer) < u32::MAX as usize'
+    'writer != held && place(writer).first < place(held).first && place(writer).overlaps(place(held))' \
+    'writer != held && place(writer).first < u32::MAX'
 mutant 'declared values are never set again' dirty/pull.rs \
     'if self.tracker.held.declared[resource.index()] && !self.is_taken(resource) {' 'if self.tracker.held.declared.len() > resource.index() {'
 mutant 'declared values at the end are left out' execute.rs \
     'in &frame.last_fills {' 'in frame.last_fills.iter().take(0) {'
 
 # What the tracker remembers.
-mutant 'what was overwritten stays held' dirty/tracker.rs 'self.evict(other);' 'let _ = other;'
+mutant 'what was overwritten stays held' dirty/tracker.rs 'self.lose_content(*other);' 'let _ = other;'
 mutant 'a failed frame leaves content held' dirty/tracker.rs 'for resource in touched {' 'for resource in touched.into_iter().take(0) {'
 mutant 'a lost device holds everything' dirty/tracker.rs \
     '*self = Tracker { frames, ..Tracker::new(Arc::clone(&self.plan)) };' 'self.frames = frames;'

@@ -3,7 +3,8 @@
 //! Run with `cargo bench -p luminaire-passes`. Nothing is computed: the device is wgpu's noop one, so that what remains is wgpu's own
 //! bookkeeping, and ours on top. By hand, the textures, views, bind groups and pipelines stand, and a frame is one encoder with the same
 //! passes, submitted once. The ratio of both is printed at the end: the median over pairs that are measured one after the other;
-//! `-- --ratio` prints nothing else.
+//! `-- --ratio` prints nothing else. A chain comes in two kinds: what runs is decided once and kept, or decided anew in every frame,
+//! since the last pass gathers what the others make and starts again.
 
 #![allow(clippy::expect_used, clippy::print_stdout, reason = "a bench stops where it can't go on, and says what it measured")]
 
@@ -51,13 +52,20 @@ const BY_HAND: &str = "
     textureStore(target_texture, at.xy, textureLoad(source, at.xy, 0));
 }";
 
+/// How a frame comes by what runs.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Decided {
+    Once,
+    Anew,
+}
+
 fn gpu() -> Gpu {
     let options = GpuOptions { noop: Some(DeviceFacts::webgpu_defaults()), ..GpuOptions::default() };
     Gpu::open(&options).expect("the noop device needs no driver")
 }
 
 /// A chain: each pass reads what the one before wrote; every other one is a Compute.
-fn plan(passes: usize) -> Plan {
+fn plan(passes: usize, decided: Decided) -> Plan {
     let mut text = String::from("(doc: \"A chain.\", resources: {");
     for index in 0..=passes {
         text += &format!("\"r{index}\": Texture(format: \"rgba16float\", size: Square({EDGE}), clear: Zero),");
@@ -65,14 +73,15 @@ fn plan(passes: usize) -> Plan {
     text.push_str("}, passes: {");
     for index in 0..passes {
         let (source, target) = (format!("r{index}"), format!("r{}", index + 1));
+        let run = if decided == Decided::Anew && index + 1 == passes { "Accumulate(4)" } else { "EveryFrame" };
         text += &if index % 2 == 0 {
             format!(
-                "\"p{index}\": Compute(shader: \"c.wgsl\", run: EveryFrame, cover: \"{target}\", read: {{\"source\": \"{source}\"}},
+                "\"p{index}\": Compute(shader: \"c.wgsl\", run: {run}, cover: \"{target}\", read: {{\"source\": \"{source}\"}},
                 write: {{\"target_texture\": \"{target}\"}}),"
             )
         } else {
             format!(
-                "\"p{index}\": Fullscreen(shader: \"f.wgsl\", run: EveryFrame, read: {{\"source\": \"{source}\"}},
+                "\"p{index}\": Fullscreen(shader: \"f.wgsl\", run: {run}, read: {{\"source\": \"{source}\"}},
                 write: {{\"color\": \"{target}\"}}),"
             )
         };
@@ -98,8 +107,8 @@ fn plan(passes: usize) -> Plan {
     plan
 }
 
-fn executor(passes: usize) -> Executor {
-    let plan = Arc::new(plan(passes));
+fn executor(passes: usize, decided: Decided) -> Executor {
+    let plan = Arc::new(plan(passes, decided));
     let mut executor = Executor::new(&gpu(), plan, &PublishedSchema::default(), Arc::new(PublishedScene::default())).expect("an executor");
     for _ in 0..3 {
         let stats = executor.render_frame().expect("a frame");
@@ -118,13 +127,13 @@ struct ByHand {
 }
 
 impl ByHand {
-    fn new(passes: usize) -> ByHand {
+    fn new(passes: usize, decided: Decided) -> ByHand {
         let gpu = gpu();
         let device = gpu.device();
         let module =
             device.create_shader_module(wgpu::ShaderModuleDescriptor { label: None, source: wgpu::ShaderSource::Wgsl(BY_HAND.into()) });
         // As many textures as the plan has memories.
-        let views: Vec<wgpu::TextureView> = (0..plan(passes).memories.len())
+        let views: Vec<wgpu::TextureView> = (0..plan(passes, decided).memories.len())
             .map(|_| {
                 let texture = device.create_texture(&wgpu::TextureDescriptor {
                     label: None,
@@ -233,8 +242,8 @@ fn cleared(view: &wgpu::TextureView) -> wgpu::RenderPassColorAttachment<'_> {
 }
 
 /// The medians of both, and of their ratio, over pairs of frames (of several, where frames are short).
-fn ratio(passes: usize) -> (Duration, Duration, f64) {
-    let (mut executor, mut by_hand) = (executor(passes), ByHand::new(passes));
+fn ratio(passes: usize, decided: Decided) -> (Duration, Duration, f64) {
+    let (mut executor, mut by_hand) = (executor(passes, decided), ByHand::new(passes, decided));
     let frames = (1_000 / passes).max(1) as u32;
     let mut pairs: Vec<(f64, Duration, Duration)> = Vec::with_capacity(PAIRS);
     for _ in 0..PAIRS {
@@ -263,9 +272,11 @@ fn frame(criterion: &mut Criterion) {
     group.sample_size(20).measurement_time(Duration::from_secs(2)).warm_up_time(Duration::from_millis(500));
     for passes in [10, 100, 1_000] {
         group.throughput(Throughput::Elements(passes as u64));
-        let mut executor = executor(passes);
-        group.bench_function(BenchmarkId::new("executor", passes), |bencher| bencher.iter(|| executor.render_frame()));
-        let mut by_hand = ByHand::new(passes);
+        for (name, decided) in [("executor", Decided::Once), ("executor, decided anew", Decided::Anew)] {
+            let mut executor = executor(passes, decided);
+            group.bench_function(BenchmarkId::new(name, passes), |bencher| bencher.iter(|| executor.render_frame()));
+        }
+        let mut by_hand = ByHand::new(passes, Decided::Once);
         group.bench_function(BenchmarkId::new("by hand", passes), |bencher| bencher.iter(|| by_hand.frame()));
     }
     group.finish();
@@ -277,8 +288,10 @@ fn main() {
         frame(&mut criterion);
         criterion.final_summary();
     }
-    for passes in [10, 100, 1_000] {
-        let (executor, by_hand, ratio) = ratio(passes);
-        println!("{passes} passes: {executor:?} by the executor, {by_hand:?} by hand, ratio {ratio:.3}");
+    for decided in [Decided::Once, Decided::Anew] {
+        for passes in [10, 100, 1_000] {
+            let (executor, by_hand, ratio) = ratio(passes, decided);
+            println!("{passes} passes, decided {decided:?}: {executor:?} by the executor, {by_hand:?} by hand, ratio {ratio:.3}");
+        }
     }
 }

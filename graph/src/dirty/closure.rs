@@ -1,44 +1,71 @@
 //! What is due, and who has to run for it.
 //!
-//! A worklist: each node and source is entered once, so that a frame costs what its changes reach.
+//! A worklist: each node and source is entered once, so that a frame costs what its changes reach. The lists are kept from frame to
+//! frame and only emptied.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::BTreeSet;
 
-use super::flow::Flow;
-use super::pull::Pull;
+use super::flow::{Flow, is_amortised};
+use super::marks::Marks;
+use super::pull::{Pull, Pulled};
 use super::tracker::Tracker;
 use super::{Frame, Remembered, StepRun, Why};
 use crate::expand::types::{ClearValue, ResourceId, Run};
-use crate::plan::{InputId, PartView, Step, StepKind};
+use crate::plan::{InputId, PartView, Plan, Step, StepKind};
+
+/// What a change reached, and what was pulled: room that every frame uses again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Reached {
+    /// Nodes whose value changes, with the first reason.
+    due: Marks<Why>,
+    open: Vec<u32>,
+    /// Sources that changed, with the cycle of the maker; twice, if by makers of two cycles.
+    sources: Marks<(u32, bool)>,
+    /// Cycles with amortised nodes that a change from outside reached.
+    cycles: Marks,
+    /// Amortised nodes that start anew.
+    restarted: Marks,
+    /// Nodes that run.
+    running: Vec<u32>,
+    pulled: Pulled,
+}
+
+impl Reached {
+    /// For the nodes of a plan.
+    pub(super) fn new(flow: &Flow, plan: &Plan) -> Reached {
+        Reached {
+            due: Marks::new(flow.nodes.len()),
+            sources: Marks::new(flow.sources.len()),
+            cycles: Marks::new(flow.nodes.len()),
+            restarted: Marks::new(flow.nodes.len()),
+            pulled: Pulled::new(flow, plan),
+            ..Reached::default()
+        }
+    }
+
+    fn clear(&mut self) {
+        self.due.clear();
+        self.open.clear();
+        self.sources.clear();
+        self.cycles.clear();
+        self.restarted.clear();
+        self.running.clear();
+    }
+}
 
 /// The nodes whose values change in a frame.
 pub(super) struct Closure<'a> {
     tracker: &'a Tracker,
     flow: &'a Flow,
-    /// Nodes whose value changes, with the first reason.
-    due: BTreeMap<u32, Why>,
-    open: Vec<u32>,
-    /// Sources that changed, with the cycle of the maker; twice, if by makers of two cycles.
-    sources: HashMap<u32, (u32, bool)>,
-    cycles: BTreeSet<u32>,
-    /// Amortised nodes that start anew.
-    restarted: BTreeSet<u32>,
+    reached: &'a mut Reached,
     /// Units of spread loops that a change reached.
     called: BTreeSet<u32>,
 }
 
 impl<'a> Closure<'a> {
-    pub(super) fn new(tracker: &'a Tracker) -> Closure<'a> {
-        Closure {
-            tracker,
-            flow: &tracker.flow,
-            due: BTreeMap::new(),
-            open: Vec::new(),
-            sources: HashMap::new(),
-            cycles: BTreeSet::new(),
-            restarted: BTreeSet::new(),
-            called: BTreeSet::new(),
-        }
+    pub(super) fn new(tracker: &'a Tracker, reached: &'a mut Reached) -> Closure<'a> {
+        reached.clear();
+        Closure { tracker, flow: &tracker.flow, reached, called: BTreeSet::new() }
     }
 
     /// Everything that runs.
@@ -87,8 +114,9 @@ impl<'a> Closure<'a> {
     /// A change from outside reaches the cycle of a node.
     fn enter(&mut self, node: u32) {
         let cycle = self.flow.cycle_of[node as usize];
-        if self.cycles.insert(cycle) {
-            for member in self.flow.amortised.of(cycle as usize) {
+        let members = self.flow.amortised.of(cycle as usize);
+        if !members.is_empty() && self.reached.cycles.insert(cycle, ()) {
+            for member in members {
                 self.restart(*member);
             }
         }
@@ -99,7 +127,7 @@ impl<'a> Closure<'a> {
         if outside {
             self.enter(node);
         }
-        if !matches!(self.flow.nodes[node as usize].run, Run::Accumulate(_) | Run::Spread { .. }) {
+        if !is_amortised(self.flow.nodes[node as usize].run) {
             self.change(node, why);
         }
     }
@@ -107,13 +135,13 @@ impl<'a> Closure<'a> {
     fn restart(&mut self, node: u32) {
         match self.flow.nodes[node as usize].run {
             Run::Accumulate(count) => {
-                self.restarted.insert(node);
+                self.reached.restarted.insert(node, ());
                 if count > 0 {
                     self.change(node, Why::Accumulates);
                 }
             }
             Run::Spread { .. } => {
-                self.restarted.insert(node);
+                self.reached.restarted.insert(node, ());
                 self.called.insert(self.flow.unit_of[node as usize]);
             }
             Run::OnChange | Run::EveryFrame => {}
@@ -122,15 +150,14 @@ impl<'a> Closure<'a> {
 
     /// A node's value changes.
     fn change(&mut self, node: u32, why: Why) {
-        if let std::collections::btree_map::Entry::Vacant(entry) = self.due.entry(node) {
-            entry.insert(why);
-            self.open.push(node);
+        if self.reached.due.insert(node, why) {
+            self.reached.open.push(node);
         }
     }
 
     /// Carries changes on to readers and modifiers.
     fn spread(&mut self) {
-        while let Some(node) = self.open.pop() {
+        while let Some(node) = self.reached.open.pop() {
             self.carry(node, None);
         }
     }
@@ -145,11 +172,11 @@ impl<'a> Closure<'a> {
                 continue;
             }
             // A second maker tells a reader something new only if it stands in another cycle.
-            let known = self.sources.get(source).copied();
+            let known = self.reached.sources.get(*source);
             if known.is_some_and(|(first, both)| both || first == cycle) {
                 continue;
             }
-            self.sources.insert(*source, known.map_or((cycle, false), |(first, _)| (first, true)));
+            self.reached.sources.set(*source, known.map_or((cycle, false), |(first, _)| (first, true)));
             for reader in self.flow.readers.of(*source as usize) {
                 let outside = self.flow.cycle_of[*reader as usize] != cycle;
                 self.reach(*reader, Why::Reads { step, resource }, outside);
@@ -189,50 +216,59 @@ impl<'a> Closure<'a> {
     /// From what changes to what runs, as steps in order.
     fn finish(self) -> Frame {
         let tracker = self.tracker;
-        let mut pull = Pull::new(tracker);
-        for node in self.due.keys() {
+        let Reached { due, restarted, running, pulled, .. } = &mut *self.reached;
+        due.sort();
+        restarted.sort();
+        let mut pull = Pull::new(tracker, pulled);
+        for node in due.marked() {
             pull.run(*node);
         }
-        pull.finish_ends(!self.due.is_empty());
+        pull.finish_ends(!due.marked().is_empty());
+        let units = pull.units();
+        running.extend(units.iter().flat_map(|unit| self.flow.units.of(*unit as usize)));
+        running.sort_unstable();
         let mut frame = Frame {
-            changed: self.due.keys().copied().collect(),
-            restarted: self.restarted.iter().copied().collect(),
-            units: pull.units(),
+            runs: Vec::with_capacity(running.len()),
+            changed: due.marked().to_vec(),
+            restarted: restarted.marked().to_vec(),
+            units,
             ..Frame::default()
         };
-        let mut nodes: Vec<u32> = frame.units.iter().flat_map(|unit| self.flow.units.of(*unit as usize)).copied().collect();
-        nodes.sort_unstable();
-        for node in nodes {
+        let accumulated = |node: u32| match self.flow.nodes[node as usize].run {
+            Run::Accumulate(_) if !restarted.contains(node) => tracker.gathered.get(&node).copied().unwrap_or(0),
+            _ => 0,
+        };
+        for node in running.iter().copied() {
             let entry = self.flow.nodes[node as usize];
-            let why = self.due.get(&node).copied().or_else(|| pull.why(self.flow.unit_of[node as usize])).unwrap_or(Why::New);
+            let why = due.get(node).or_else(|| pull.why(self.flow.unit_of[node as usize])).unwrap_or(Why::New);
             match frame.runs.last_mut().filter(|run| run.step == entry.step as usize) {
                 Some(run) => run.iterations.extend(entry.iteration),
                 None => frame.runs.push(StepRun {
                     step: entry.step as usize,
                     iterations: entry.iteration.into_iter().collect(),
-                    accumulated: self.accumulated(node),
+                    accumulated: accumulated(node),
                     fills: Vec::new(),
                     clears: Vec::new(),
-                    remembered: self.remembered(&tracker.plan.steps[entry.step as usize]),
+                    remembered: None,
                     why,
                 }),
             }
         }
-        for run in &mut frame.runs {
-            run.clears = clears(&tracker.plan.steps[run.step], run);
+        for run in frame.runs.iter_mut().filter(|run| !tracker.plain[run.step]) {
+            let step = &tracker.plan.steps[run.step];
+            run.clears = clears(step, run);
+            if let StepKind::Remember { source, .. } = &step.kind {
+                run.remembered = Some(tracker.past.get(&source.resource).copied().unwrap_or(Remembered::Gone));
+            }
         }
         pull.fill(&mut frame);
         frame
     }
+}
 
-    fn accumulated(&self, node: u32) -> u32 {
-        if self.restarted.contains(&node) { 0 } else { self.tracker.gathered.get(&node).copied().unwrap_or(0) }
-    }
-
-    fn remembered(&self, step: &Step) -> Option<Remembered> {
-        let StepKind::Remember { source, .. } = &step.kind else { return None };
-        Some(self.tracker.past.get(&source.resource).copied().unwrap_or(Remembered::Gone))
-    }
+/// Whether a step neither clears nor remembers, whenever it runs.
+pub(super) fn is_plain(step: &Step) -> bool {
+    step.clears.is_empty() && !matches!(step.kind, StepKind::Remember { .. })
 }
 
 /// What a step's clears come to: those of an accumulating step only at its start; of a batched one in the parts of the iterations that

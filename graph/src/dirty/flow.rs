@@ -75,6 +75,10 @@ pub(super) struct Flow {
     pub(super) units: Lists,
     /// By unit: its pieces.
     pub(super) unit_pieces: Lists,
+    /// By unit: whether it runs when its turn comes, and is never run for a reader.
+    amortised_units: Vec<bool>,
+    /// By step: resources that it writes, in the order of its uses.
+    pub(super) writes: Lists,
     /// By resource: its pieces.
     pub(super) resource_pieces: Lists,
     /// By resource: parts that nothing makes, where something is used or shown.
@@ -213,6 +217,15 @@ impl Flow {
         let unit_pieces = numbered(pieces().map(|(at, piece)| (piece.unit, at)).collect(), units);
         let resource_pieces = numbered(pieces().map(|(at, piece)| (piece.resource.0, at)).collect(), input.resources);
         (self.unit_pieces, self.resource_pieces) = (unit_pieces, resource_pieces);
+        self.amortised_units = vec![false; units];
+        for (node, unit) in self.nodes.iter().zip(&self.unit_of) {
+            self.amortised_units[*unit as usize] |= is_amortised(node.run);
+        }
+        for step in input.steps {
+            let written = step.uses.iter().filter(|used| crate::schedule::writes(used.role));
+            written.for_each(|used| self.writes.push(used.resource.0));
+            self.writes.finish_list();
+        }
         self.units = numbered(self.unit_of.iter().enumerate().map(|(node, unit)| (*unit, node as u32)).collect(), units);
         self.input_readers = numbered(self.taken_inputs(input), input.inputs);
         self.recallers = numbered(recalls.to_vec(), input.resources);
@@ -317,8 +330,7 @@ impl Flow {
                 }
             }
         }
-        let amortised = |run: Run| matches!(run, Run::Spread { .. } | Run::Accumulate(_));
-        let members = self.nodes.iter().enumerate().filter(|(_, node)| amortised(node.run));
+        let members = self.nodes.iter().enumerate().filter(|(_, node)| is_amortised(node.run));
         self.amortised = Lists::sets(self.nodes.len(), members.map(|(node, _)| (self.cycle_of[node], node as u32)).collect());
     }
 
@@ -329,9 +341,13 @@ impl Flow {
 
     /// Whether a unit is amortised: it runs when its turn comes, and is never run for a reader.
     pub(super) fn is_amortised(&self, unit: u32) -> bool {
-        let amortised = |run: Run| matches!(run, Run::Spread { .. } | Run::Accumulate(_));
-        self.units.of(unit as usize).iter().any(|node| amortised(self.nodes[*node as usize].run))
+        self.amortised_units[unit as usize]
     }
+}
+
+/// Whether a node runs when its turn comes.
+pub(super) fn is_amortised(run: Run) -> bool {
+    matches!(run, Run::Spread { .. } | Run::Accumulate(_))
 }
 
 /// A version of a cell: the step that made it, and those of its nodes that did.

@@ -20,14 +20,16 @@ mod closure;
 mod flow;
 mod habit;
 mod maker;
+mod marks;
+mod place;
 mod pull;
 mod retention;
 mod tracker;
 
 pub use adopt::{Adoption, Carry};
+pub(crate) use place::overlap;
 pub use retention::{Retention, retention};
 pub use tracker::Tracker;
-pub(crate) use tracker::overlap;
 
 use crate::expand::types::{ClearValue, ResourceId};
 use crate::plan::{InputId, PartView};

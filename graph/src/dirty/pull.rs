@@ -3,14 +3,17 @@
 //! A value is there if its maker runs in this frame, or if it was held when the frame began and nothing that runs before its reader
 //! writes other content to the same bytes. Running one more unit may take another's bytes, so that the rules are followed until
 //! nothing is added: the least set.
+//!
+//! Only memories that several resources live in are looked at: what has its own is there until it is written again.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap};
+use std::collections::BTreeMap;
 
 use super::flow::Flow;
-use super::tracker::{Tracker, overlap};
+use super::marks::Marks;
+use super::tracker::Tracker;
 use super::{Frame, Why};
 use crate::expand::types::{ClearValue, ResourceId};
-use crate::plan::{PartView, Role, Use};
+use crate::plan::{MemoryId, PartView, Plan, Role, Use};
 
 /// What somebody relies on to be still there.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -20,44 +23,87 @@ enum Relied {
     Declared,
 }
 
-pub(super) struct Pull<'a> {
-    tracker: &'a Tracker,
-    flow: &'a Flow,
-    running: BTreeMap<u32, Why>,
+/// What runs and what it needs: room that every frame uses again.
+#[derive(Debug, Clone, Default)]
+pub(super) struct Pulled {
+    /// Units, with the first reason.
+    running: Marks<Why>,
     open: Vec<u32>,
-    needed: BTreeSet<u32>,
-    /// By memory: resources that are written in this frame, and what is relied on.
-    written: HashMap<u32, BTreeSet<ResourceId>>,
-    relied: HashMap<u32, Vec<(ResourceId, Relied, Option<usize>)>>,
+    /// Sources that are read or shown.
+    needed: Marks,
+    /// Resources that are written.
+    written: Marks,
     /// Resources whose declared values have to be set again.
-    fills: BTreeSet<ResourceId>,
-    /// Sources that are read or shown, and pieces of amortised units among them.
-    ends: Vec<ResourceId>,
+    fills: Marks,
+    /// By memory; those that are not empty are marked.
+    memories: Vec<Memory>,
+    touched: Marks,
 }
 
-impl<'a> Pull<'a> {
-    pub(super) fn new(tracker: &'a Tracker) -> Pull<'a> {
-        Pull {
-            tracker,
-            flow: &tracker.flow,
-            running: BTreeMap::new(),
+/// What happens to a memory in a frame.
+#[derive(Debug, Clone, Default)]
+struct Memory {
+    written: Vec<ResourceId>,
+    relied: Vec<(ResourceId, Relied, Option<usize>)>,
+}
+
+impl Pulled {
+    /// For the units of a plan.
+    pub(super) fn new(flow: &Flow, plan: &Plan) -> Pulled {
+        Pulled {
+            running: Marks::new(flow.units.count()),
             open: Vec::new(),
-            needed: BTreeSet::new(),
-            written: HashMap::new(),
-            relied: HashMap::new(),
-            fills: BTreeSet::new(),
-            ends: Vec::new(),
+            needed: Marks::new(flow.sources.len()),
+            written: Marks::new(plan.resources.len()),
+            fills: Marks::new(plan.resources.len()),
+            memories: vec![Memory::default(); plan.memories.len()],
+            touched: Marks::new(plan.memories.len()),
         }
     }
 
-    /// The units that run.
-    pub(super) fn units(&self) -> Vec<u32> {
-        self.running.keys().copied().collect()
+    fn clear(&mut self) {
+        self.running.clear();
+        self.open.clear();
+        self.needed.clear();
+        self.written.clear();
+        self.fills.clear();
+        for memory in self.touched.marked() {
+            let Memory { written, relied } = &mut self.memories[*memory as usize];
+            written.clear();
+            relied.clear();
+        }
+        self.touched.clear();
+    }
+
+    fn memory(&mut self, memory: MemoryId) -> &mut Memory {
+        self.touched.insert(memory.0, ());
+        &mut self.memories[memory.index()]
+    }
+}
+
+pub(super) struct Pull<'a> {
+    tracker: &'a Tracker,
+    flow: &'a Flow,
+    pulled: &'a mut Pulled,
+    /// Whether outputs and histories are asked for what they show.
+    ends: bool,
+}
+
+impl<'a> Pull<'a> {
+    pub(super) fn new(tracker: &'a Tracker, pulled: &'a mut Pulled) -> Pull<'a> {
+        pulled.clear();
+        Pull { tracker, flow: &tracker.flow, pulled, ends: false }
+    }
+
+    /// The units that run, rising.
+    pub(super) fn units(&mut self) -> Vec<u32> {
+        self.pulled.running.sort();
+        self.pulled.running.marked().to_vec()
     }
 
     /// Why a node runs whose value does not change.
     pub(super) fn why(&self, unit: u32) -> Option<Why> {
-        self.running.get(&unit).copied()
+        self.pulled.running.get(unit)
     }
 
     /// Adds the unit of a node whose value changes, and whatever it needs.
@@ -68,7 +114,7 @@ impl<'a> Pull<'a> {
     }
 
     fn drain(&mut self) {
-        while let Some(unit) = self.open.pop() {
+        while let Some(unit) = self.pulled.open.pop() {
             for piece in self.flow.unit_pieces.of(unit as usize) {
                 self.write(self.flow.pieces[*piece as usize].resource);
             }
@@ -82,20 +128,14 @@ impl<'a> Pull<'a> {
     }
 
     fn enter(&mut self, unit: u32, why: Why) {
-        if let std::collections::btree_map::Entry::Vacant(entry) = self.running.entry(unit) {
-            entry.insert(why);
-            self.open.push(unit);
+        if self.pulled.running.insert(unit, why) {
+            self.pulled.open.push(unit);
         }
     }
 
     /// What outputs show and histories remember has to be there when the frame ends.
     pub(super) fn finish_ends(&mut self, something_runs: bool) {
-        if !self.tracker.ends_open && !something_runs {
-            return;
-        }
-        let plan = &self.tracker.plan;
-        self.ends = plan.outputs.iter().map(|output| output.view.resource).collect();
-        self.ends.extend(self.tracker.past.keys());
+        self.ends = self.tracker.ends_open || something_runs;
         if !self.tracker.ends_open {
             return;
         }
@@ -114,7 +154,7 @@ impl<'a> Pull<'a> {
     }
 
     fn need(&mut self, source: u32, reader: Option<usize>) {
-        if !self.needed.insert(source) {
+        if !self.pulled.needed.insert(source, ()) {
             return;
         }
         let source = &self.flow.sources[source as usize];
@@ -134,7 +174,7 @@ impl<'a> Pull<'a> {
 
     fn need_piece(&mut self, piece: u32, last: bool, reader: Option<usize>) {
         let entry = &self.flow.pieces[piece as usize];
-        if self.flow.is_amortised(entry.unit) || self.running.contains_key(&entry.unit) {
+        if self.pulled.running.contains(entry.unit) || self.flow.is_amortised(entry.unit) {
             return;
         }
         if last && self.tracker.held.pieces[piece as usize] && !self.is_taken(entry.resource) {
@@ -156,43 +196,49 @@ impl<'a> Pull<'a> {
     }
 
     fn set_declared(&mut self, resource: ResourceId) {
-        if self.fills.insert(resource) {
+        if self.pulled.fills.insert(resource.0, ()) {
             self.write(resource);
         }
     }
 
-    fn memory(&self, resource: ResourceId) -> Option<u32> {
-        self.tracker.plan.resources[resource.index()].placement.map(|placement| placement.memory.0)
+    /// The memory that a resource shares with others.
+    fn shared_memory(&self, resource: ResourceId) -> Option<MemoryId> {
+        let place = &self.tracker.places[resource.index()];
+        place.memory.filter(|_| place.shared)
     }
 
-    /// Whether content of one resource is gone before the readers of another come.
+    /// Whether content of a resource is gone before the readers of another come.
     fn takes(&self, writer: ResourceId, held: ResourceId) -> bool {
-        let plan = &self.tracker.plan;
-        let start = |resource: ResourceId| plan.resources[resource.index()].lifetime.start;
-        writer != held && start(writer) < start(held) && overlap(plan, writer, held)
+        let place = |resource: ResourceId| &self.tracker.places[resource.index()];
+        writer != held && place(writer).first < place(held).first && place(writer).overlaps(place(held))
     }
 
     fn is_taken(&self, resource: ResourceId) -> bool {
-        let written = self.memory(resource).and_then(|memory| self.written.get(&memory));
-        written.into_iter().flatten().any(|writer| self.takes(*writer, resource))
+        let memory = self.shared_memory(resource).map(|memory| &self.pulled.memories[memory.index()]);
+        memory.is_some_and(|memory| memory.written.iter().any(|writer| self.takes(*writer, resource)))
     }
 
     fn rely(&mut self, resource: ResourceId, what: Relied, reader: Option<usize>) {
-        if let Some(memory) = self.memory(resource) {
-            self.relied.entry(memory).or_default().push((resource, what, reader));
+        if let Some(memory) = self.shared_memory(resource) {
+            self.pulled.memory(memory).relied.push((resource, what, reader));
         }
     }
 
     /// A resource is written in this frame: whoever relied on other content of its bytes has it made again.
     fn write(&mut self, resource: ResourceId) {
-        let Some(memory) = self.memory(resource) else { return };
-        if !self.written.entry(memory).or_default().insert(resource) {
+        let Some(memory) = self.shared_memory(resource) else { return };
+        if !self.pulled.written.insert(resource.0, ()) {
             return;
         }
-        let Some(mut relied) = self.relied.remove(&memory) else { return };
+        let entry = self.pulled.memory(memory);
+        entry.written.push(resource);
+        if entry.relied.is_empty() {
+            return;
+        }
+        let mut relied = std::mem::take(&mut entry.relied);
         let lost: Vec<_> = relied.iter().copied().filter(|(held, ..)| self.takes(resource, *held)).collect();
         relied.retain(|entry| !lost.contains(entry));
-        self.relied.insert(memory, relied);
+        self.pulled.memory(memory).relied = relied;
         for (held, what, reader) in lost {
             match what {
                 Relied::Piece(piece) => {
@@ -205,19 +251,20 @@ impl<'a> Pull<'a> {
     }
 
     /// Enters declared values before the first step that touches their resource, or at the end.
-    pub(super) fn fill(&self, frame: &mut Frame) {
+    pub(super) fn fill(&mut self, frame: &mut Frame) {
         let held = &self.tracker.held;
         let mut wanted: BTreeMap<ResourceId, Vec<(PartView, ClearValue)>> = BTreeMap::new();
-        for resource in &self.fills {
+        self.pulled.fills.sort();
+        frame.filled = self.pulled.fills.marked().to_vec();
+        for resource in frame.filled.iter().map(|resource| ResourceId(*resource)) {
             let rects = &self.flow.unmade[resource.index()];
-            wanted.entry(*resource).or_default().extend(self.tracker.fills_of(*resource, rects));
-            frame.filled.push(resource.0);
+            wanted.entry(resource).or_default().extend(self.tracker.fills_of(resource, rects));
         }
         for piece in &held.unheld_amortised {
             let entry = &self.flow.pieces[*piece as usize];
             let resource = entry.resource;
             let declared = self.tracker.plan.resources[resource.index()].clear.is_some();
-            if declared && (self.flow.shared[resource.index()] || !self.running.contains_key(&entry.unit)) {
+            if declared && (self.flow.shared[resource.index()] || !self.pulled.running.contains(entry.unit)) {
                 let parts = wanted.entry(resource).or_default();
                 for fill in self.tracker.fills_of(resource, &entry.rects) {
                     if !parts.contains(&fill) {
@@ -229,10 +276,15 @@ impl<'a> Pull<'a> {
         for (resource, fills) in wanted {
             // What the last frame left is remembered before it is filled.
             let uses = |used: &Use| used.resource == resource && used.role != Role::Recall;
-            let touches = |step: usize| self.tracker.plan.steps[step].uses.iter().any(uses);
-            match frame.runs.iter_mut().find(|run| touches(run.step)) {
+            let plan = &self.tracker.plan;
+            let touches = |step: usize| plan.steps[step].uses.iter().any(uses);
+            let lifetime = &plan.resources[resource.index()].lifetime;
+            let from = frame.runs.partition_point(|run| run.step < lifetime.start);
+            let mut users = frame.runs[from..].iter_mut().take_while(|run| run.step < lifetime.end);
+            let shown = || plan.outputs.iter().any(|output| output.view.resource == resource) || self.tracker.past.contains_key(&resource);
+            match users.find(|run| touches(run.step)) {
                 Some(run) => run.fills.extend(fills),
-                None if self.ends.contains(&resource) => frame.last_fills.extend(fills),
+                None if self.ends && shown() => frame.last_fills.extend(fills),
                 None => {}
             }
         }

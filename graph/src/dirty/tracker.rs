@@ -3,9 +3,10 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
-use super::closure::Closure;
-use super::flow::{Flow, FlowInput};
+use super::closure::{Closure, Reached, is_plain};
+use super::flow::{Flow, FlowInput, is_amortised};
 use super::habit::Habit;
+use super::place::Place;
 use super::{Frame, Idle, Remembered};
 use crate::expand::types::{ClearValue, OnResize, ResourceId, Run};
 use crate::plan::{Input, PartView, Plan, PlannedShape, Step, StepKind};
@@ -40,6 +41,10 @@ pub(super) struct Turn {
 pub struct Tracker {
     pub(super) plan: Arc<Plan>,
     pub(super) flow: Flow,
+    /// By resource.
+    pub(super) places: Vec<Place>,
+    /// By step: whether it neither clears nor remembers.
+    pub(super) plain: Vec<bool>,
     pub(super) held: Held,
     /// Nodes that have not run as they are.
     pub(super) fresh: BTreeSet<u32>,
@@ -69,6 +74,8 @@ pub struct Tracker {
     pub(super) frames: u64,
     /// What the last frames had in common.
     pub(super) habit: Option<Habit>,
+    /// Room to decide in; says nothing between frames.
+    pub(super) reached: Reached,
 }
 
 impl Tracker {
@@ -107,6 +114,9 @@ impl Tracker {
             ends_open: true,
             frames: 0,
             habit: None,
+            reached: Reached::new(&flow, &plan),
+            places: Place::all(&plan),
+            plain: plan.steps.iter().map(is_plain).collect(),
             flow,
             plan,
         };
@@ -129,13 +139,21 @@ impl Tracker {
         &self.held.residents
     }
 
-    /// Decides what runs, given the revision of each input. Changes nothing.
-    pub fn frame(&self, revisions: &[u64]) -> Arc<Frame> {
+    /// Decides what runs, given the revision of each input. Changes nothing but the room that it decides in.
+    pub fn frame(&mut self, revisions: &[u64]) -> Arc<Frame> {
         if let Some(frame) = self.habit.as_ref().and_then(|habit| habit.recall(self.changed_inputs(revisions))) {
-            debug_assert_eq!(**frame, Closure::new(self).frame(revisions), "a habit that is none");
-            return Arc::clone(frame);
+            let frame = Arc::clone(frame);
+            debug_assert_eq!(*frame, self.decide(revisions), "a habit that is none");
+            return frame;
         }
-        Arc::new(Closure::new(self).frame(revisions))
+        Arc::new(self.decide(revisions))
+    }
+
+    fn decide(&mut self, revisions: &[u64]) -> Frame {
+        let mut reached = std::mem::take(&mut self.reached);
+        let frame = Closure::new(self, &mut reached).frame(revisions);
+        self.reached = reached;
+        frame
     }
 
     /// Inputs whose revision is another than when their readers last ran.
@@ -155,8 +173,8 @@ impl Tracker {
             self.frames += 1;
             return;
         }
-        let amortised = |node: &u32| matches!(self.flow.nodes[*node as usize].run, Run::Spread { .. } | Run::Accumulate(_));
-        let repeats = frame.restarted.is_empty() && !frame.changed.iter().any(amortised);
+        let amortised = |node: &u32| is_amortised(self.flow.nodes[*node as usize].run);
+        let repeats = !self.amortises() || (frame.restarted.is_empty() && !frame.changed.iter().any(amortised));
         let changed = self.changed_inputs(revisions).collect();
         self.habit = repeats.then(|| Habit::next(self.habit.take(), changed, frame));
         self.see(revisions);
@@ -171,12 +189,30 @@ impl Tracker {
 
     fn settle_frame(&mut self, frame: &Frame) {
         self.occupy(frame);
-        for node in &frame.changed {
-            self.fresh.remove(node);
+        if !self.fresh.is_empty() {
+            for node in &frame.changed {
+                self.fresh.remove(node);
+            }
+            self.fresh.retain(|node| !is_amortised(self.flow.nodes[*node as usize].run));
         }
-        let amortised = |node: &u32| !matches!(self.flow.nodes[*node as usize].run, Run::Spread { .. } | Run::Accumulate(_));
-        self.fresh.retain(amortised);
-        self.advance_turns(frame);
+        if self.amortises() {
+            self.advance_turns(frame);
+        }
+        if !self.past.is_empty() {
+            self.remember(frame);
+        }
+        self.carried.clear();
+        self.ends_open = false;
+        self.frames += 1;
+    }
+
+    /// Whether the plan has passes that run a few at a time.
+    fn amortises(&self) -> bool {
+        !self.gathered.is_empty() || !self.turns.is_empty()
+    }
+
+    /// What histories see in the next frame.
+    fn remember(&mut self, frame: &Frame) {
         self.recalling.clear();
         for node in &frame.changed {
             for piece in self.flow.unit_pieces.of(self.flow.unit_of[*node as usize] as usize) {
@@ -204,9 +240,6 @@ impl Tracker {
         for resource in std::mem::take(&mut self.remade) {
             self.recalling.extend(self.flow.recallers.of(resource.index()));
         }
-        self.carried.clear();
-        self.ends_open = false;
-        self.frames += 1;
     }
 
     /// Records that a frame was not submitted, although some of it may have run.
@@ -260,8 +293,7 @@ impl Tracker {
 
     /// Whether a node writes a resource.
     pub(super) fn writes(&self, node: u32, resource: ResourceId) -> bool {
-        let step = &self.plan.steps[self.flow.nodes[node as usize].step as usize];
-        step.uses.iter().any(|used| used.resource == resource && crate::schedule::writes(used.role))
+        self.flow.writes.of(self.flow.nodes[node as usize].step as usize).contains(&resource.0)
     }
 
     /// Moves content as the frame's steps did, in their order.
@@ -270,29 +302,29 @@ impl Tracker {
             for (part, _) in &run.fills {
                 self.fill(part.resource, frame);
             }
-            let nodes = self.flow.of_step(run.step);
-            let ran: Vec<u32> = match run.iterations.as_slice() {
-                [] => nodes.collect(),
-                some => some.iter().map(|iteration| nodes.start + iteration).collect(),
-            };
-            let mut written: Vec<ResourceId> = Vec::new();
-            let step = &self.plan.steps[run.step];
-            written.extend(step.uses.iter().filter(|used| crate::schedule::writes(used.role)).map(|used| used.resource));
-            for resource in written {
-                self.settle(resource);
+            for at in 0..self.flow.writes.of(run.step).len() {
+                self.settle(ResourceId(self.flow.writes.of(run.step)[at]));
             }
-            for node in ran {
-                let unit = self.flow.unit_of[node as usize] as usize;
-                for piece in self.flow.unit_pieces.of(unit) {
-                    // The last of the unit's steps leaves the value; until then nobody relies on it.
-                    self.held.pieces[*piece as usize] = true;
-                    self.held.unheld_amortised.remove(piece);
-                    self.held.unseen.remove(piece);
-                }
+            let first = self.flow.of_step(run.step).start;
+            match run.iterations.as_slice() {
+                [] => self.hold(first),
+                some => some.iter().for_each(|iteration| self.hold(first + iteration)),
             }
         }
         for (part, _) in &frame.last_fills {
             self.fill(part.resource, frame);
+        }
+    }
+
+    /// The unit of a node leaves its value: the last of its steps does, until then nobody relies on it.
+    fn hold(&mut self, node: u32) {
+        let unit = self.flow.unit_of[node as usize];
+        for piece in self.flow.unit_pieces.of(unit as usize) {
+            self.held.pieces[*piece as usize] = true;
+            if self.flow.is_amortised(unit) {
+                self.held.unheld_amortised.remove(piece);
+                self.held.unseen.remove(piece);
+            }
         }
     }
 
@@ -313,8 +345,8 @@ impl Tracker {
     /// Makes a resource the holder of its bytes.
     fn settle(&mut self, resource: ResourceId) {
         self.evict_for(resource);
-        let Some(placement) = self.plan.resources[resource.index()].placement else { return };
-        let residents = &mut self.held.residents[placement.memory.index()];
+        let Some(memory) = self.places[resource.index()].memory else { return };
+        let residents = &mut self.held.residents[memory.index()];
         if !residents.contains(&resource) {
             residents.push(resource);
         }
@@ -322,18 +354,27 @@ impl Tracker {
 
     /// Whatever else had these bytes is gone.
     fn evict_for(&mut self, resource: ResourceId) {
-        let Some(placement) = self.plan.resources[resource.index()].placement else { return };
-        let others: Vec<ResourceId> = self.held.residents[placement.memory.index()]
-            .iter()
-            .copied()
-            .filter(|other| *other != resource && overlap(&self.plan, *other, resource))
-            .collect();
-        for other in others {
-            self.evict(other);
-        }
+        let place = self.places[resource.index()];
+        let Some(memory) = place.memory.filter(|_| place.shared) else { return };
+        let mut residents = std::mem::take(&mut self.held.residents[memory.index()]);
+        residents.retain(|other| {
+            let stays = *other == resource || !place.overlaps(&self.places[other.index()]);
+            if !stays {
+                self.lose_content(*other);
+            }
+            stays
+        });
+        self.held.residents[memory.index()] = residents;
     }
 
     fn evict(&mut self, resource: ResourceId) {
+        self.lose_content(resource);
+        if let Some(memory) = self.places[resource.index()].memory {
+            self.held.residents[memory.index()].retain(|resident| *resident != resource);
+        }
+    }
+
+    fn lose_content(&mut self, resource: ResourceId) {
         for piece in self.flow.resource_pieces.of(resource.index()) {
             self.held.pieces[*piece as usize] = false;
             if self.flow.is_amortised(self.flow.pieces[*piece as usize].unit) {
@@ -341,9 +382,6 @@ impl Tracker {
             }
         }
         self.held.declared[resource.index()] = false;
-        if let Some(placement) = self.plan.resources[resource.index()].placement {
-            self.held.residents[placement.memory.index()].retain(|resident| *resident != resource);
-        }
     }
 
     pub(super) fn find_unheld(&mut self) {
@@ -423,15 +461,4 @@ impl Tracker {
         let value = planned.clear.unwrap_or(ClearValue::Zero);
         rects.iter().map(move |rect| (rect.view_in(resource, &planned.shape), value))
     }
-}
-
-/// Whether two resources of one memory have a byte in common.
-pub(crate) fn overlap(plan: &Plan, a: ResourceId, b: ResourceId) -> bool {
-    let bytes = |id: ResourceId| {
-        let resource = &plan.resources[id.index()];
-        let start = resource.placement.map_or(0, |placement| placement.offset);
-        (resource.placement.map(|placement| placement.memory), start, start.saturating_add(resource.bytes))
-    };
-    let (a, b) = (bytes(a), bytes(b));
-    a.0 == b.0 && a.0.is_some() && a.1 < b.2 && b.1 < a.2
 }

@@ -236,7 +236,8 @@ mod tests {
         }
         let mut tracker = Tracker::new(Arc::new(plan.clone()));
         let mut recorder = Recorder::default();
-        execute_poisoned(&tracker, &tracker.frame(&[]), &mut recorder).unwrap();
+        let frame = tracker.frame(&[]);
+        execute_poisoned(&tracker, &frame, &mut recorder).unwrap();
         let wanted = "poison a\n\
             run reset: clear a.mip(0).layer(0) to zero\n\
             poison b\n\
