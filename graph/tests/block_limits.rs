@@ -110,3 +110,42 @@ fn blocks_of_blocks() {
     }
     assert_eq!(codes(&compiled(&files)), ["load::too-deep"]);
 }
+
+/// A pipeline of loops and a block, besides which a pass of the block modifies the same part.
+fn loops(passes: &str) -> Compilation {
+    let text = format!(
+        r#"(
+    doc: "Loops.",
+    blocks: {{"other": (file: "through.ron", inputs: {{"light": "light"}})}},
+    resources: {{"light": Texture(format: "rgba8unorm", clear: Zero), "many": Texture(format: "rgba8unorm", size: Square(4), clear: Zero)}},
+    passes: {{{passes}}},
+    outputs: {{"color": "many"}},
+)"#
+    );
+    let shader = "struct Targets { color: vec4<f32> }\n@fragment fn add() -> Targets { return Targets(vec4<f32>(0.2)); }\n";
+    let files = MemoryFiles::default().with(FileKind::Pipeline, "it.ron", &text).with(FileKind::Pipeline, "through.ron", THROUGH);
+    compiled(&files.with(FileKind::Shader, "add.wgsl", shader))
+}
+
+const ADD: &str = "Fullscreen(shader: \"add.wgsl\", blend: {\"color\": Add}, modify: {\"color\": \"many\"})";
+
+#[test]
+fn many_modifiers() {
+    let passes = format!("\"adds\": Repeat(each: Count(20000), as: \"i\", passes: {{\"add\": {ADD}}})");
+    assert!(loops(&passes).plan.is_some());
+}
+
+#[test]
+fn loops_after_loops() {
+    let repeat = |name: &str, after: &str| {
+        format!("\"{name}\": Repeat(each: Count(20000), as: \"i\", after: [{after}], passes: {{\"add\": {ADD}}}), ")
+    };
+    assert_eq!(codes(&loops(&(repeat("first", "") + &repeat("second", "\"first\"")))), ["expand::too-many-after"]);
+}
+
+#[test]
+fn many_problems() {
+    let wrong: String = (0..50_000).map(|index| format!("\"w{index}\": Clear(write: \"nothing{index}\"), ")).collect();
+    let problems = loops(&wrong).diagnostics;
+    assert!(problems.len() >= 50_000, "{} of {:?}", problems.len(), problems.first());
+}

@@ -40,6 +40,8 @@ pub enum ExpandError {
     PartOfBuffer { pass: String, resource: String, what: &'static str, span: Span },
     #[error("loop `{name}` makes the pipeline longer than {limit} passes")]
     TooManyPasses { name: String, limit: usize, span: Span },
+    #[error("with `{path}` more than {limit} pairs of passes wait for each other by `after`")]
+    TooManyAfter { path: String, limit: usize, span: Span },
     #[error("`{path}` stands for {count} passes here")]
     AmbiguousPass { path: String, count: usize, span: Span },
     #[error("`{path}` does not stand in this scene or with these parameters, and its value is read")]
@@ -100,6 +102,9 @@ impl From<ExpandError> for Diagnostic {
             ExpandError::TooManyPasses { span, .. } => Diagnostic::error("expand::too-many-passes", message)
                 .at(span, "this loop")
                 .hint("lower its count, or do the work of many iterations in one Compute"),
+            ExpandError::TooManyAfter { span, .. } => Diagnostic::error("expand::too-many-after", message)
+                .at(span, "here")
+                .hint("name one pass: what the first loop writes and the second reads is in order without `after`"),
             ExpandError::AmbiguousPass { span, .. } => {
                 Diagnostic::error("expand::ambiguous-pass", message).at(span, "this name").hint("name one iteration: `loop[3].pass`")
             }

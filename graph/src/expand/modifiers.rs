@@ -9,7 +9,7 @@ use std::collections::{BTreeMap, BinaryHeap};
 use super::environment::Environment;
 use super::error::ExpandError;
 use super::types::{Output, Pass, PassId, Resource, ResourceId};
-use super::writers::Writers;
+use super::writers::{Writers, Written};
 
 /// Brings passes of different lists in the order that `after` says, and reports modifiers that nothing orders.
 pub(super) fn order(environment: &mut Environment<'_>, resources: &[Resource], passes: &mut Vec<Pass>, outputs: &mut [Output]) {
@@ -27,8 +27,12 @@ pub(super) fn order(environment: &mut Environment<'_>, resources: &[Resource], p
     let writers = Writers::new(resources, passes);
     for (index, pass) in passes.iter().enumerate() {
         for slot in &pass.modifies {
-            let modifiers = writers.overlapping(&slot.part).into_iter().flat_map(|written| &written.modifiers);
-            let Some(before) = modifiers.copied().filter(|other| other.index() < index).max() else { continue };
+            // Modifiers of a part stand in rising order.
+            let before = |written: &Written| {
+                let end = written.modifiers.partition_point(|other| other.index() < index);
+                end.checked_sub(1).map(|last| written.modifiers[last])
+            };
+            let Some(before) = writers.overlapping(&slot.part).into_iter().filter_map(before).max() else { continue };
             let other = &passes[before.index()];
             if other.list != pass.list && !pass.after.contains(&before) {
                 environment.report(ExpandError::ModifierOrder {

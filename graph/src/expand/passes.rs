@@ -23,6 +23,9 @@ pub(super) struct Unrolled {
     pub outputs: Vec<Output>,
 }
 
+/// Pipelines in which more passes wait for passes under `after`, pair by pair, are refused.
+const MAX_AFTER: usize = 1_000_000;
+
 /// Unrolls everything. `asked` says which outputs are wanted.
 pub(super) fn passes(
     environment: &mut Environment<'_>,
@@ -304,9 +307,18 @@ impl Unroller<'_, '_> {
             }
         }
         let pending = std::mem::take(&mut self.pending);
+        let mut pairs = 0;
         for (index, pending) in pending.into_iter().enumerate() {
             for seen in &pending.after {
+                if pairs > MAX_AFTER {
+                    break;
+                }
                 let found = find(&self.passes, &by_plain_name, seen, true);
+                pairs += found.len();
+                if pairs > MAX_AFTER {
+                    let Located { value: path, span } = seen.path.clone();
+                    self.environment.report(ExpandError::TooManyAfter { path, limit: MAX_AFTER, span });
+                }
                 self.passes[index].after.extend(found);
             }
             for (slot, seen) in pending.versions {

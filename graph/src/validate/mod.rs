@@ -47,6 +47,7 @@ pub fn validate(loaded: &Loaded, published: &PublishedSchema) -> Result<Validate
         loops: Default::default(),
         following: Vec::new(),
         problems: Vec::new(),
+        reported: Default::default(),
     };
     let (mut blocks, mut params, mut resources) = (Vec::new(), Vec::new(), Vec::new());
     for index in 0..instances.len() {

@@ -4,6 +4,8 @@
 //! (`shadows.texels`), the index of a loop is marked (`@face`), and the extent of what a reference names has the
 //! number of that reference (`$3.width`).
 
+use std::collections::HashSet;
+
 use indexmap::IndexMap;
 
 use super::error::ValidateError;
@@ -40,6 +42,8 @@ pub(super) struct Scope<'a> {
     pub following: Vec<(usize, String)>,
     /// Everything wrong.
     pub problems: Vec<Diagnostic>,
+    /// Codes, places and messages of `problems`, where a file may be met several times.
+    pub reported: HashSet<(&'static str, Option<Span>, String)>,
 }
 
 /// The loops around a place.
@@ -102,14 +106,15 @@ impl<'a> Scope<'a> {
     /// Records a problem. One of a block is recorded once, however often the block stands.
     pub fn report(&mut self, error: ValidateError) {
         let mut problem = Diagnostic::from(error);
-        let known = |other: &Diagnostic| (other.code, &other.message, &other.primary) == (problem.code, &problem.message, &problem.primary);
-        if self.instances.len() > 1 && self.problems.iter().any(known) {
+        let place = problem.primary.as_ref().map(|label| label.span);
+        if self.instances.len() > 1 && !self.reported.insert((problem.code, place, problem.message.clone())) {
             return;
         }
         let instance = self.instance();
         let path = instance.path.trim_end_matches('.');
-        let place = problem.primary.as_ref().map(|label| label.span.file);
-        let at_its_user = place.is_some_and(|file| file != instance.loaded.file && file == self.instances[instance.parent].loaded.file);
+        let at_its_user = place
+            .map(|place| place.file)
+            .is_some_and(|file| file != instance.loaded.file && file == self.instances[instance.parent].loaded.file);
         if !path.is_empty() && !at_its_user {
             problem = problem.note(format!("in the block `{path}`"));
         }
