@@ -38,8 +38,8 @@ pub fn assemble(
     }
     keep_used(&mut steps, &mut shaders, &mut views, &mut draw_lists, &mut inputs, &mut retained_for);
     // A requirement names its pass; loops give every pass a name of its own.
-    let culled: std::collections::BTreeSet<&str> = schedule.culled.iter().map(|culled| culled.name.as_str()).collect();
-    requirements.retain(|requirement| !culled.contains(requirement.pass.as_str()));
+    let culled: std::collections::BTreeSet<&str> = schedule.culled.iter().map(|culled| &*culled.name).collect();
+    requirements.retain(|requirement| !culled.contains(&*requirement.pass));
 
     let outputs = expanded
         .outputs

@@ -141,7 +141,7 @@ impl Harness {
 
     /// The passes in the order in which they run.
     pub fn order(&self) -> Vec<&str> {
-        self.plan().steps.iter().map(|step| step.name.as_str()).collect()
+        self.plan().steps.iter().map(|step| &*step.name).collect()
     }
 
     /// The resources that have some of the same bytes at another time.

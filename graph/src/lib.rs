@@ -23,6 +23,7 @@ pub mod harness;
 pub mod lifetime;
 mod lists;
 pub mod load;
+mod mixer;
 pub mod place;
 pub mod plan;
 pub mod published;

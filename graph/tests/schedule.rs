@@ -69,7 +69,7 @@ fn what_no_output_needs_is_culled_with_its_reason() {
          pass kept write a\npass dead write b\npass deader read b write c\noutput color a",
     );
     let schedule = graph.schedule();
-    let reasons: Vec<_> = schedule.culled.iter().map(|culled| (culled.name.as_str(), culled.reason.clone())).collect();
+    let reasons: Vec<_> = schedule.culled.iter().map(|culled| (&*culled.name, culled.reason.clone())).collect();
     let deader = schedule.culled[1].pass;
     assert_eq!(reasons, [("dead", CullReason::OnlyCulledReaders(vec![deader])), ("deader", CullReason::Unread)]);
     let problems = graph.problems();
@@ -105,7 +105,7 @@ fn declared_value_fills_what_nothing_produces_before_its_first_use() {
     let clears: Vec<_> = schedule
         .initial_clears
         .iter()
-        .map(|clear| (graph.bound.steps[clear.pass.index()].name.as_str(), clear.part.mips.clone(), clear.part.layers.clone()))
+        .map(|clear| (&*graph.bound.steps[clear.pass.index()].name, clear.part.mips.clone(), clear.part.layers.clone()))
         .collect();
     assert_eq!(clears, [("b", 0..1, 0..1), ("c", 2..4, 0..1)]);
     // They are set when they are not held, not whenever the step runs.
@@ -286,8 +286,8 @@ fn branches_run_one_after_the_other() {
         gather += &format!(" read c{branch}");
     }
     text += &format!("{level_a}{level_b}{level_c}{gather}\noutput color sum");
-    let figures = fixture(&text).plan().figures;
-    assert!(figures.reached * 10 < figures.declared_bound, "{figures:?}");
+    let plan = fixture(&text).plan();
+    assert!(plan.figures.reached * 10 < plan.declared_bound(), "{:?}", plan.figures);
 }
 
 /// Two hundred writers of a part each and two hundred readers of the whole.

@@ -1,5 +1,7 @@
 //! The pass kind Compute.
 
+use std::sync::Arc;
+
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::plan::{Plan, Step, Workgroups};
 
@@ -12,7 +14,7 @@ use crate::timing::{FrameCounts, Stamps};
 /// A Compute that is ready to run.
 #[derive(Debug)]
 pub(crate) struct ComputeStep {
-    name: String,
+    name: Arc<str>,
     pipeline: wgpu::ComputePipeline,
     groups: StepGroups,
     workgroups: Dispatch,

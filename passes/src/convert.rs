@@ -217,7 +217,7 @@ mod tests {
         let format = Format::from_name("rgba8unorm").unwrap();
         let shape = TextureShape {
             dimension: Dimension::D2,
-            formats: vec![format],
+            formats: [format].into_iter().collect(),
             format_span: Default::default(),
             width: 5,
             height: 2,

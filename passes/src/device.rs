@@ -306,7 +306,7 @@ mod tests {
     fn a_missing_feature_names_pass_feature_and_adapter() {
         let requirement = Requirement {
             feature: luminaire_graph::device::Feature::ShaderF16,
-            pass: "shade".to_owned(),
+            pass: "shade".into(),
             span: luminaire_graph::source::Span::NOWHERE,
             why: "for 16-bit floats".to_owned(),
         };

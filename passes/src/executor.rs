@@ -198,7 +198,7 @@ impl Executor {
 
     /// The passes that ran in the last frame, in order.
     pub fn ran(&self) -> Vec<&str> {
-        self.last.runs.iter().map(|run| self.plan.steps[run.step].name.as_str()).collect()
+        self.last.runs.iter().map(|run| &*self.plan.steps[run.step].name).collect()
     }
 
     /// Whether some pass runs in every frame, so that it never settles.

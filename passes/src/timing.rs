@@ -5,6 +5,8 @@
 //!
 //! Accepted downside: reading times waits for the GPU, so they are measured only when asked for.
 
+use std::sync::Arc;
+
 use luminaire_graph::diagnostic::Diagnostic;
 
 use crate::device::Gpu;
@@ -32,7 +34,7 @@ pub struct FrameCounts {
 #[derive(Debug, Clone, PartialEq)]
 pub struct StepTime {
     /// The step's name.
-    pub name: String,
+    pub name: Arc<str>,
     /// Milliseconds; clears that ran before it are not in it.
     pub milliseconds: f64,
 }

@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> bool {
     let fine = report(&compilation.diagnostics, &compilation.sources) && counts.is_some();
     let Some(plan) = compilation.plan else { return false };
     if let Some(name) = &arguments.pass {
-        let known = || plan.steps.iter().map(|step| step.name.as_str()).chain(plan.culled.iter().map(|culled| culled.name.as_str()));
+        let known = || plan.steps.iter().map(|step| &*step.name).chain(plan.culled.iter().map(|culled| &*culled.name));
         if !known().any(|other| other == name) {
             let problem = Diagnostic::error("explain::unknown-pass", format!("`{}` has no pass `{name}`", arguments.pipeline))
                 .maybe_hint(did_you_mean(name, known()));

@@ -139,7 +139,7 @@ fn stats(session: &Session, frame: &FrameStats, frames: u32, arguments: &RenderA
             "without_sharing": figures.without_sharing,
             "reached": figures.reached,
             "bound": figures.bound,
-            "declared_bound": figures.declared_bound,
+            "declared_bound": session.plan.declared_bound(),
             "placed": placed.bytes,
             "placed_bound": placed.bound,
             "retained": figures.retained,

@@ -8,25 +8,28 @@ fn thread_us() -> f64 {
     stat.split_whitespace().next().and_then(|nanoseconds| nanoseconds.parse::<f64>().ok()).unwrap_or(f64::NAN) * 1e-3
 }
 
-/// Runs go on for so long.
+/// The runs of each go on for so long.
 const ENOUGH_US: f64 = 30_000.0;
 const FEWEST_RUNS: usize = 5;
 
-/// The median of many runs, after some that warm up; freeing what is made is not timed.
-pub fn median_us<T>(work: impl Fn() -> T) -> f64 {
-    let run = || {
-        let start = thread_us();
-        let made = std::hint::black_box(work());
-        let spent = thread_us() - start;
-        drop(made);
-        spent
-    };
-    run();
-    run();
-    let mut samples = Vec::new();
-    while samples.len() < FEWEST_RUNS || samples.iter().sum::<f64>() < ENOUGH_US {
-        samples.push(run());
+/// Microseconds that some work takes; freeing what it makes is not timed.
+pub fn timed<T>(work: impl Fn() -> T) -> f64 {
+    let start = thread_us();
+    let made = std::hint::black_box(work());
+    let spent = thread_us() - start;
+    drop(made);
+    spent
+}
+
+/// The median of many runs of each, after some that warm up. They take turns, so that a machine that slows down slows all.
+pub fn medians<const COUNT: usize>(runs: [&dyn Fn() -> f64; COUNT]) -> [f64; COUNT] {
+    runs.iter().for_each(|run| _ = (run(), run()));
+    let mut samples: [Vec<f64>; COUNT] = std::array::from_fn(|_| Vec::new());
+    while samples.iter().any(|samples| samples.len() < FEWEST_RUNS || samples.iter().sum::<f64>() < ENOUGH_US) {
+        runs.iter().zip(&mut samples).for_each(|(run, samples)| samples.push(run()));
     }
-    samples.sort_by(f64::total_cmp);
-    samples[samples.len() / 2]
+    samples.map(|mut samples| {
+        samples.sort_by(f64::total_cmp);
+        samples[samples.len() / 2]
+    })
 }

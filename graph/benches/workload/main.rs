@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 
 use serde_json::json;
 
-use baselines::BASELINES;
-use clock::median_us;
+use baselines::{BASELINES, Baseline};
+use clock::{medians, timed};
 use declared::{Declared, UNIT};
 use table::{Row, print};
 
@@ -76,11 +76,18 @@ fn main() {
         declared.outputs.iter().for_each(|name| outputs[ids(name)] = true);
 
         let (bound_graph, planned) = ours::plan(&declared);
-        let (compile, bound_to_plan) = (median_us(|| ours::plan(&declared)), median_us(|| ours::plan_of(&bound_graph)));
-        let placing = median_us(|| {
-            let (bound, planned) = ours::plan(&declared);
-            (planned.placed(), bound, planned)
-        });
+        let baseline = |baseline| timed(|| baselines::plan(&declared, baseline));
+        let [compile, bound_to_plan, placing, exact] = medians([
+            &|| timed(|| ours::plan(&declared)),
+            &|| timed(|| ours::plan_of(&bound_graph)),
+            &|| {
+                timed(|| {
+                    let (bound, planned) = ours::plan(&declared);
+                    (planned.placed(), bound, planned)
+                })
+            },
+            &|| baseline(Baseline::ExactGreedy),
+        ]);
         let heap = planned.placed();
         let order: Vec<usize> = heap.order.iter().map(|pass| pass.index()).collect();
         let (bound, none) = peak_and_sum(&declared, &order, &outputs, &ids);
@@ -91,9 +98,10 @@ fn main() {
         let allocated = planned.allocated(&declared);
 
         let mut baselines = Vec::new();
-        for (baseline, _) in BASELINES {
-            let bytes: u64 = baselines::plan(&declared, baseline).memories.iter().sum();
-            baselines.push((bytes, median_us(|| baselines::plan(&declared, baseline))));
+        for (kind, _) in BASELINES {
+            let bytes: u64 = baselines::plan(&declared, kind).memories.iter().sum();
+            let [microseconds] = if kind == Baseline::ExactGreedy { [exact] } else { medians([&|| baseline(kind)]) };
+            baselines.push((bytes, microseconds));
         }
         let place: Vec<(u32, u32, u64)> = heap.offsets.iter().map(|(resource, offset)| (resource.0, 0, *offset)).collect();
         println!(

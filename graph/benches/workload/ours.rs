@@ -4,6 +4,7 @@
 //! where a part has one producer, and is refused; the files have none.
 
 use std::collections::HashMap;
+use std::sync::Arc;
 
 use luminaire_graph::allocate::{Allocation, allocate};
 use luminaire_graph::bind::types::Bound;
@@ -91,7 +92,7 @@ fn resource(declared: &DeclaredResource, formats: &[(&str, Format)]) -> Resource
         None => Shape::Buffer { bytes: u64::from(declared.extent[0]) },
         Some(format) => Shape::Texture(TextureShape {
             dimension: if declared.extent[2] > 1 { Dimension::D3 } else { Dimension::D2 },
-            formats: vec![format],
+            formats: [format].into_iter().collect(),
             format_span: Span::NOWHERE,
             width: declared.extent[0],
             height: declared.extent[1],
@@ -145,8 +146,9 @@ fn bound(declared: &Declared) -> Bound {
                 });
             }
         }
+        let name: Arc<str> = entry.name.as_str().into();
         passes.push(Pass {
-            name: entry.name.clone(),
+            name: name.clone(),
             span: Span::NOWHERE,
             block: Default::default(),
             list: 0,
@@ -165,7 +167,7 @@ fn bound(declared: &Declared) -> Bound {
         let kind = StepKind::Compute { entry: String::new(), groups: Workgroups::Fixed([1, 1, 1]) };
         steps.push(Step {
             pass,
-            name: entry.name.clone(),
+            name,
             span: Span::NOWHERE,
             shader: None,
             kind,

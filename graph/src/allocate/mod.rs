@@ -98,7 +98,6 @@ fn place(bound: &Bound, schedule: &Schedule, lifetimes: &Lifetimes, usages: Vec<
         without_sharing: figures::without_sharing(model, ranges),
         reached: sum(&memories[..transient_memories]),
         bound: figures::peak(model, ranges),
-        declared_bound: schedule.flow.peak(&schedule.flow.declared, &schedule.flow.bytes),
         retained: sum(&memories[transient_memories..]),
     };
     let alone = refusals::refusals(model, lifetimes, &timeline, &memories, &placements);

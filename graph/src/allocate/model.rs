@@ -7,6 +7,7 @@ use crate::bind::types::Bound;
 use crate::expand::types::{ResourceId, Shape, TextureShape};
 use crate::format::Format;
 use crate::lifetime::Touches;
+use crate::mixer::BuildMixer;
 use crate::plan::{Access, Retained, Usage};
 use crate::schedule::{Touch, Uses};
 
@@ -56,7 +57,7 @@ impl Model {
     /// Reads a pipeline. `alive` tells for each pass whether it runs.
     pub(crate) fn new(bound: &Bound, uses: &Uses, retained: &[Option<Retained>], alive: &[bool]) -> Model {
         // Looked up and never walked, so its order does not matter.
-        let mut known: HashMap<Descriptor, u32> = HashMap::new();
+        let mut known: HashMap<Descriptor, u32, BuildMixer> = HashMap::default();
         let mut descriptors = Vec::new();
         let count = bound.expanded.resources.len();
         let (mut pools, mut tight, mut charged) = (Vec::with_capacity(count), Vec::with_capacity(count), Vec::with_capacity(count));

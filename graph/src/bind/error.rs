@@ -1,5 +1,7 @@
 //! What can be wrong between a pass and its shader.
 
+use std::sync::Arc;
+
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::source::Span;
 
@@ -8,31 +10,39 @@ use crate::source::Span;
 #[allow(missing_docs)]
 pub enum BindError {
     #[error("pass `{pass}`: `{file}` has no {stage} entry point{}", name.as_ref().map(|name| format!(" `{name}`")).unwrap_or_default())]
-    NoEntry { pass: String, file: String, stage: &'static str, name: Option<String>, known: Vec<String>, span: Span },
+    NoEntry { pass: Arc<str>, file: String, stage: &'static str, name: Option<String>, known: Vec<String>, span: Span },
     #[error("pass `{pass}`: `{file}` has {} {stage} entry points, and the pass says not which", known.len())]
-    ManyEntries { pass: String, file: String, stage: &'static str, field: &'static str, known: Vec<String>, span: Span },
+    ManyEntries { pass: Arc<str>, file: String, stage: &'static str, field: &'static str, known: Vec<String>, span: Span },
     #[error("pass `{pass}`: nothing feeds the shader's variable `{variable}`")]
-    Unfed { pass: String, variable: String, known: Vec<String>, span: Span, pass_span: Span },
+    Unfed { pass: Arc<str>, variable: String, known: Vec<String>, span: Span, pass_span: Span },
     #[error("pass `{pass}`: no variable or output of the shader takes the slot `{slot}`")]
-    NoTaker { pass: String, slot: String, declared: bool, known: Vec<String>, span: Span },
+    NoTaker { pass: Arc<str>, slot: String, declared: bool, known: Vec<String>, span: Span },
     #[error("pass `{pass}`: `{variable}` {reason}")]
-    Mismatch { kind: Mismatch, pass: String, variable: String, reason: String, hint: Option<String>, slot_span: Span, variable_span: Span },
+    Mismatch {
+        kind: Mismatch,
+        pass: Arc<str>,
+        variable: String,
+        reason: String,
+        hint: Option<String>,
+        slot_span: Span,
+        variable_span: Span,
+    },
     #[error("pass `{pass}`: `{variable}` {reason}")]
-    Table { kind: Mismatch, pass: String, variable: String, reason: String, hint: Option<String>, variable_span: Span, pass_span: Span },
+    Table { kind: Mismatch, pass: Arc<str>, variable: String, reason: String, hint: Option<String>, variable_span: Span, pass_span: Span },
     #[error("pass `{pass}`: {reason}")]
-    Param { pass: String, reason: String, hint: Option<String>, span: Span, pass_span: Span },
+    Param { pass: Arc<str>, reason: String, hint: Option<String>, span: Span, pass_span: Span },
     #[error("pass `{pass}`: {reason}")]
-    Constant { pass: String, reason: String, hint: Option<String>, span: Span },
+    Constant { pass: Arc<str>, reason: String, hint: Option<String>, span: Span },
     #[error("pass `{pass}`: {reason}")]
-    Target { pass: String, reason: String, hint: Option<String>, span: Span },
+    Target { pass: Arc<str>, reason: String, hint: Option<String>, span: Span },
     #[error("pass `{pass}`: {reason}")]
-    Work { pass: String, reason: String, hint: Option<String>, span: Span },
+    Work { pass: Arc<str>, reason: String, hint: Option<String>, span: Span },
     #[error("resource `{resource}`: no format of its list can do what passes do with it")]
     NoFormat { resource: String, reasons: Vec<String>, span: Span, first: Option<(Span, String)> },
     #[error("pass `{pass}`: {reason}")]
-    OverLimit { pass: String, reason: String, span: Span },
+    OverLimit { pass: Arc<str>, reason: String, span: Span },
     #[error("pass `{pass}` needs the feature `{feature}` {why}, which is not there ({device})")]
-    MissingFeature { pass: String, feature: &'static str, why: String, device: String, span: Span },
+    MissingFeature { pass: Arc<str>, feature: &'static str, why: String, device: String, span: Span },
 }
 
 /// Which property of a resource and a shader variable differ.

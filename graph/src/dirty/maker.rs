@@ -42,7 +42,7 @@ impl Names {
             resource(&mut used.resource);
             used.span = Span::NOWHERE;
             used.version = used.version.map(|pass| {
-                let name = plan.steps.iter().find(|step| step.pass == pass).map_or("", |step| step.name.as_str());
+                let name = plan.steps.iter().find(|step| step.pass == pass).map_or("", |step| &*step.name);
                 PassId(self.of(format!("pass {name}")))
             });
         }

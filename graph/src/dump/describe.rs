@@ -21,8 +21,8 @@ pub(super) fn resource(plan: &Plan, id: ResourceId) -> &str {
 
 /// The name of a pass, culled or not.
 pub(super) fn pass(plan: &Plan, id: PassId) -> &str {
-    let run = plan.steps.iter().find(|step| step.pass == id).map(|step| step.name.as_str());
-    run.or_else(|| plan.culled.iter().find(|culled| culled.pass == id).map(|culled| culled.name.as_str())).unwrap_or("?")
+    let run = plan.steps.iter().find(|step| step.pass == id).map(|step| &*step.name);
+    run.or_else(|| plan.culled.iter().find(|culled| culled.pass == id).map(|culled| &*culled.name)).unwrap_or("?")
 }
 
 /// The name of a part: `x`, `x.mip(1)`, `x.face(2)`.

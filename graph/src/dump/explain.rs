@@ -1,5 +1,7 @@
 //! Why each pass ran in a frame or did not, why each resource shares memory or does not, and why each culled pass is culled.
 
+use std::sync::Arc;
+
 use serde_json::{Value as Json, json};
 
 use super::describe;
@@ -10,7 +12,7 @@ use crate::plan::{Input, InputId, Plan};
 
 /// A pass and what became of it.
 struct Story {
-    pass: String,
+    pass: Arc<str>,
     ran: bool,
     /// Stable, for programs.
     reason: &'static str,
@@ -27,7 +29,7 @@ pub fn explain_text(tracker: &Tracker, frame: &Frame, only: Option<&str>) -> Str
     for story in &stories {
         out += &format!("  {} {}: {}\n", if story.ran { "ran " } else { "idle" }, story.pass, story.text);
     }
-    let culled: Vec<_> = plan.culled.iter().filter(|culled| only.is_none_or(|name| name == culled.name)).collect();
+    let culled: Vec<_> = plan.culled.iter().filter(|culled| only.is_none_or(|name| *name == *culled.name)).collect();
     if !culled.is_empty() {
         out += &format!("\nculled: {}\n", culled.len());
         for pass in culled {
@@ -102,7 +104,7 @@ fn stories(tracker: &Tracker, frame: &Frame, only: Option<&str>) -> Vec<Story> {
 }
 
 fn why(plan: &Plan, why: Why) -> (&'static str, String) {
-    let step = |index: usize| plan.steps.get(index).map_or("?", |step| step.name.as_str());
+    let step = |index: usize| plan.steps.get(index).map_or("?", |step| &*step.name);
     let resource = |id| describe::resource(plan, id);
     match why {
         Why::New => ("new", "it has not run as it is".to_owned()),

@@ -80,7 +80,7 @@ fn figures(plan: &Plan, page: &mut String) {
         ("transient, without sharing", figures.without_sharing),
         ("transient, reached", figures.reached),
         ("the most in use at once", figures.bound),
-        ("the same in the order of the file", figures.declared_bound),
+        ("the same in the order of the file", plan.declared_bound()),
         ("retained", figures.retained),
         ("total", figures.reached.saturating_add(figures.retained)),
     ] {

@@ -43,7 +43,7 @@ pub fn json(plan: &Plan, sources: &SourceMap) -> Json {
             "without_sharing": figures.without_sharing,
             "reached": figures.reached,
             "bound": figures.bound,
-            "declared_bound": figures.declared_bound,
+            "declared_bound": plan.declared_bound(),
             "placed": placed.bytes,
             "placed_bound": placed.bound,
             "retained": figures.retained,

@@ -122,7 +122,7 @@ fn figures(plan: &Plan, out: &mut Writer) {
         ("without sharing", figures.without_sharing, "every transient resource in memory of its own"),
         ("reached", figures.reached, "what this plan allocates for transients"),
         ("bound", figures.bound, "the most bytes in use at once: no plan with this order takes less"),
-        ("declared bound", figures.declared_bound, "the same for the order of the file"),
+        ("declared bound", plan.declared_bound(), "the same for the order of the file"),
         ("placed", placed.bytes, "if resources could be placed by byte, in an order for that, textures in units of 64 KiB"),
         ("placed bound", placed.bound, "the most bytes in use at once in that order"),
         ("retained", figures.retained, "outputs and what can be read without being made again: shares with nothing"),

@@ -127,7 +127,7 @@ mod tests {
     fn step(name: &str, kind: StepKind) -> Step {
         Step {
             pass: PassId(0),
-            name: name.to_owned(),
+            name: name.into(),
             span: Span::NOWHERE,
             shader: None,
             kind,

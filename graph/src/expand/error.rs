@@ -1,5 +1,7 @@
 //! What can be wrong once expressions have values.
 
+use std::sync::Arc;
+
 use crate::diagnostic::{Diagnostic, did_you_mean, list_names};
 use crate::source::Span;
 
@@ -23,7 +25,7 @@ pub enum ExpandError {
     #[error("the extent of `{name}` depends on itself: {}", chain.join(" -> "))]
     CircularExtent { name: String, chain: Vec<String>, span: Span },
     #[error("`{first}` and `{second}` both modify `{resource}`, and nothing says which comes first")]
-    ModifierOrder { resource: String, first: String, second: String, spans: [Span; 2] },
+    ModifierOrder { resource: String, first: Arc<str>, second: Arc<str>, spans: [Span; 2] },
     #[error("there is no output `{name}`")]
     UnknownOutput { name: String, known: Vec<String> },
     #[error("{what}: {reason}")]
@@ -49,9 +51,9 @@ pub enum ExpandError {
     #[error("resource `{name}` can't be `keep: Never`: {why}")]
     MustBeKept { name: String, why: &'static str, span: Span },
     #[error("`{resource}` is written by `{pass}`, which does not run in every frame, and by `{other}`")]
-    SharedWithAmortised { resource: String, pass: String, other: String, span: Span, other_span: Span },
+    SharedWithAmortised { resource: String, pass: Arc<str>, other: Arc<str>, span: Span, other_span: Span },
     #[error("`{resource}` has no declared value, and `{pass}` needs one before it has run")]
-    NoValueBefore { resource: String, pass: String, span: Span, declared: Span },
+    NoValueBefore { resource: String, pass: Arc<str>, span: Span, declared: Span },
     #[error("the cycle {cycle} would never settle: each pass in it runs because the one before has run")]
     NeverSettles { cycle: String, span: Span, pass: Span },
 }

@@ -26,7 +26,7 @@ pub(super) fn passes(histories: &[Located<ResourceId>], resources: &[Resource], 
         let span = history.span;
         let part = PartRef { resource: ResourceId((first + index) as u32), mips: None, layers: None, version: None, span };
         passes.push(Pass {
-            name: resource.name.clone(),
+            name: resource.name.as_str().into(),
             block: Default::default(),
             list: 0,
             span,

@@ -186,7 +186,7 @@ impl Unroller<'_, '_> {
         let next = self.lists.len() as u32;
         let list = *self.lists.entry((self.block.clone(), decl.file)).or_insert(next);
         self.passes.push(Pass {
-            name,
+            name: name.into(),
             block: self.block.clone(),
             list,
             span: decl.name.span,

@@ -174,5 +174,15 @@ fn texture(environment: &mut Environment<'_>, name: &str, kind: &ResourceKind, d
         check.bad(format!("the depth format {format} needs a 2D or cube texture"), "use `dimension: D2` or `Cube`", *format_span);
         return None;
     }
-    Some(TextureShape { dimension, formats: formats.clone(), format_span: *format_span, width, height, depth, layers, mips, samples })
+    Some(TextureShape {
+        dimension,
+        formats: formats.as_slice().into(),
+        format_span: *format_span,
+        width,
+        height,
+        depth,
+        layers,
+        mips,
+        samples,
+    })
 }

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use smallvec::SmallVec;
+
 use crate::format::Format;
 use crate::plan::Cull;
 use crate::published::{DrawFilter, ViewKind};
@@ -164,7 +166,7 @@ pub struct TextureShape {
     /// 1D, 2D, 3D, cube.
     pub dimension: Dimension,
     /// In order of preference; never empty.
-    pub formats: Vec<Format>,
+    pub formats: SmallVec<[Format; 4]>,
     /// Where the format is written.
     pub format_span: Span,
     /// Of mip 0.
@@ -205,7 +207,7 @@ pub enum ClearValue {
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pass {
     /// Stable and unique: `shade`, `faces[3].draw`, `shadows.draw`.
-    pub name: String,
+    pub name: Arc<str>,
     /// Begins the names of parameters that its shader sees: the path of its block, `shadows.`, or nothing.
     pub block: Arc<str>,
     /// The list in which it stands, counted through all files and blocks: within one, the order says who modifies first.

@@ -50,6 +50,11 @@ pub struct HeapPlan {
 }
 
 impl Plan {
+    /// The largest sum of live bytes at any pass of the declared order, as [`crate::plan::MemoryFigures::bound`] is of the chosen one.
+    pub fn declared_bound(&self) -> u64 {
+        self.flow.peak(&self.flow.declared, &self.flow.bytes)
+    }
+
     /// What the transient resources would take if they could be placed by byte.
     pub fn placed(&self) -> HeapPlan {
         place(&self.flow, Alignment::default())

@@ -7,13 +7,15 @@
 
 use std::cmp::Reverse;
 use std::collections::{BinaryHeap, HashSet};
-use std::hash::{BuildHasherDefault, Hasher};
 
 use crate::lists::Lists;
+use crate::mixer::BuildMixer;
 use crate::schedule::flow::Flow;
 
 /// Sets that are looked at.
 const BUDGET: usize = 20_000;
+/// So many that most searches look at no more.
+const MOST: usize = 1_000;
 
 /// An order whose peak is below `limit`, and that peak. `None` if there is none, there are more than 64 passes, or the budget ran out.
 pub(crate) fn best_order(flow: &Flow, bytes: &[u64], limit: u64) -> Option<(Vec<u32>, u64)> {
@@ -38,26 +40,6 @@ struct State {
 /// Least peak, then most passes, then least live bytes, then the first found; and which state.
 type Ranked = (Reverse<u64>, u32, Reverse<u64>, Reverse<u32>);
 
-/// Mixes one number, for sets of passes: looked up and never walked.
-#[derive(Default)]
-struct Mixer(u64);
-
-impl Hasher for Mixer {
-    fn finish(&self) -> u64 {
-        self.0
-    }
-
-    fn write(&mut self, bytes: &[u8]) {
-        bytes.iter().for_each(|byte| self.write_u64(u64::from(*byte)));
-    }
-
-    fn write_u64(&mut self, number: u64) {
-        // The upper bits of a product depend on all of the number; tables use the lower ones, too.
-        let product = (self.0 ^ number).wrapping_mul(0x9e37_79b9_7f4a_7c15);
-        self.0 = product ^ product >> 32;
-    }
-}
-
 struct Search<'a> {
     flow: &'a Flow,
     /// By pass: what it needs, joins resolved.
@@ -67,6 +49,8 @@ struct Search<'a> {
     /// By item: who touches it, and its bytes.
     items: Vec<(u64, u64)>,
     states: Vec<State>,
+    /// Passes that are ready, with what [`Search::cost`] says.
+    costs: Vec<(u32, u64, u64)>,
 }
 
 /// The numbers of a set.
@@ -91,7 +75,7 @@ impl<'a> Search<'a> {
         let needs = (0..flow.passes.len()).map(|pass| behind(&flow.before, pass)).collect();
         let needed_by = (0..flow.passes.len()).map(|pass| behind(&flow.after, pass)).collect();
         let items = bytes.iter().enumerate().map(|(item, bytes)| (passes_of(flow.users.of(item)), *bytes)).collect();
-        Search { flow, needs, needed_by, items, states: Vec::new() }
+        Search { flow, needs, needed_by, items, states: Vec::with_capacity(MOST), costs: Vec::new() }
     }
 
     /// What no order can do without: the most that one pass touches.
@@ -102,42 +86,47 @@ impl<'a> Search<'a> {
     }
 
     fn run(&mut self, limit: u64) -> Option<(Vec<u32>, u64)> {
-        if limit <= self.floor() {
+        // What no order can do without counts from the start, so that whatever stays below it does no harm.
+        let floor = self.floor();
+        if limit <= floor {
             return None;
         }
         let all = u64::MAX >> (64 - self.flow.passes.len());
-        let mut known: HashSet<u64, BuildHasherDefault<Mixer>> = HashSet::default();
+        let mut known: HashSet<u64, BuildMixer> = HashSet::with_capacity_and_hasher(MOST, Default::default());
         let mut queue: BinaryHeap<Ranked> = BinaryHeap::new();
         let ready = self.needs.iter().enumerate().fold(0, |set, (pass, needs)| if *needs == 0 { set | 1 << pass } else { set });
-        self.states.push(State { done: 0, ready, live: 0, peak: 0, came_from: None });
-        queue.push((Reverse(0), 0, Reverse(0), Reverse(0)));
+        self.states.push(State { done: 0, ready, live: 0, peak: floor, came_from: None });
+        queue.push((Reverse(floor), 0, Reverse(0), Reverse(0)));
         while let Some((.., Reverse(index))) = queue.pop() {
-            let index = self.settle(index);
-            let state = self.states[index as usize];
+            // A set that was reached before was reached with no larger a peak.
+            if !known.insert(self.states[index as usize].done) {
+                continue;
+            }
+            let settled = self.settle(index);
+            let state = self.states[settled as usize];
             if state.done == all {
-                return Some((self.order(index), state.peak));
+                return Some((self.order(settled), state.peak));
             }
             if self.states.len() > BUDGET {
                 return None;
             }
-            // A set that was reached before was reached with no larger a peak.
-            if !known.insert(state.done) {
+            if settled != index && !known.insert(state.done) {
                 continue;
             }
-            for pass in members(state.ready) {
-                let next = self.after(index, pass);
-                if next.peak < limit && !known.contains(&next.done) {
+            for place in 0..self.costs.len() {
+                let (pass, live, peak) = self.costs[place];
+                if peak < limit && !known.contains(&(state.done | 1 << pass)) {
                     let number = self.states.len() as u32;
-                    queue.push((Reverse(next.peak), next.done.count_ones(), Reverse(next.live), Reverse(number)));
-                    self.states.push(next);
+                    queue.push((Reverse(peak), state.done.count_ones() + 1, Reverse(live), Reverse(number)));
+                    self.states.push(self.after(settled, pass, live, peak));
                 }
             }
         }
         None
     }
 
-    fn after(&self, from: u32, pass: u32) -> State {
-        let State { done, ready, live, peak, .. } = self.states[from as usize];
+    /// Live bytes after one more pass, and the peak by then.
+    fn cost(&self, &State { done, live, peak, .. }: &State, pass: u32) -> (u64, u64) {
         let now = done | 1 << pass;
         let (mut during, mut freed) = (live, 0u64);
         for item in self.flow.touches.of(pass as usize) {
@@ -149,19 +138,33 @@ impl<'a> Search<'a> {
                 freed = freed.saturating_add(bytes);
             }
         }
-        let released = members(self.needed_by[pass as usize]).filter(|later| self.needs[*later as usize] & !now == 0);
-        let ready = released.fold(ready & !(1 << pass), |set, later| set | 1 << later);
-        State { done: now, ready, live: during.saturating_sub(freed), peak: peak.max(during), came_from: Some((from, pass)) }
+        (during.saturating_sub(freed), peak.max(during))
     }
 
-    /// Runs every pass that can do no harm.
+    fn after(&self, from: u32, pass: u32, live: u64, peak: u64) -> State {
+        let State { done, ready, .. } = self.states[from as usize];
+        let now = done | 1 << pass;
+        let released = members(self.needed_by[pass as usize]).filter(|later| self.needs[*later as usize] & !now == 0);
+        let ready = released.fold(ready & !(1 << pass), |set, later| set | 1 << later);
+        State { done: now, ready, live, peak, came_from: Some((from, pass)) }
+    }
+
+    /// Runs every pass that can do no harm. Leaves what the others cost.
     fn settle(&mut self, mut index: u32) -> u32 {
-        loop {
+        'settled: loop {
             let state = self.states[index as usize];
-            let mut harmless = members(state.ready).map(|pass| self.after(index, pass));
-            let Some(next) = harmless.find(|next| next.live <= state.live && next.peak <= state.peak) else { return index };
-            index = self.states.len() as u32;
-            self.states.push(next);
+            self.costs.clear();
+            for pass in members(state.ready) {
+                let (live, peak) = self.cost(&state, pass);
+                if live <= state.live && peak <= state.peak {
+                    let next = self.after(index, pass, live, peak);
+                    index = self.states.len() as u32;
+                    self.states.push(next);
+                    continue 'settled;
+                }
+                self.costs.push((pass, live, peak));
+            }
+            return index;
         }
     }
 

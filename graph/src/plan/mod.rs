@@ -9,6 +9,8 @@ pub use step::{
     Stages, Step, StepIteration, StepKind, Targets, Use, Workgroups,
 };
 
+use std::sync::Arc;
+
 use std::ops::Range;
 
 use crate::device::Feature;
@@ -221,7 +223,7 @@ pub struct Culled {
     /// Which.
     pub pass: PassId,
     /// Its name.
-    pub name: String,
+    pub name: Arc<str>,
     /// Its kind in RON.
     pub kind: &'static str,
     /// The resources that it would have written.
@@ -261,8 +263,6 @@ pub struct MemoryFigures {
     pub reached: u64,
     /// The largest sum of live bytes at any step: no plan with this order can take less.
     pub bound: u64,
-    /// The same for the declared order.
-    pub declared_bound: u64,
     /// Resources that share with nothing.
     pub retained: u64,
 }
@@ -273,7 +273,7 @@ pub struct Requirement {
     /// Which.
     pub feature: Feature,
     /// The pass that needs it.
-    pub pass: String,
+    pub pass: Arc<str>,
     /// Where.
     pub span: Span,
     /// Why, as the end of a sentence: `to filter "radiance" (r32float)`.

@@ -1,6 +1,7 @@
 //! Steps: what a pass does on a device, as values. Every name is resolved, and indices point into the [`Plan`](super::Plan).
 
 use std::ops::Range;
+use std::sync::Arc;
 
 use super::Usage;
 use crate::expand::types::{ClearValue, OnResize, PassId, ResourceId, Run};
@@ -16,7 +17,7 @@ pub struct Step {
     /// The expanded pass.
     pub pass: PassId,
     /// Its name.
-    pub name: String,
+    pub name: Arc<str>,
     /// Its name in the file.
     pub span: Span,
     /// Index into [`super::Plan::shaders`].

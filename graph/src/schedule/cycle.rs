@@ -118,7 +118,7 @@ fn shortest(dag: &Why, start: NodeIndex, component: &[NodeIndex]) -> Vec<Link> {
 }
 
 fn report(bound: &Bound, links: &[Link], component: &[NodeIndex], dag: &Why) -> Diagnostic {
-    let name = |pass: PassId| bound.steps[pass.index()].name.as_str();
+    let name = |pass: PassId| &*bound.steps[pass.index()].name;
     let resource = |why: &Dependency| why.resource.map_or("", |resource| bound.expanded.resources[resource.index()].name.as_str());
     let sentence = |(earlier, later, why): &Link| match why.reason {
         Reason::Value => format!("`{}` needs `{}` from `{}`", name(*later), resource(why), name(*earlier)),

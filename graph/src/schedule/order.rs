@@ -13,7 +13,7 @@ use crate::allocate::model::{Model, Pool};
 use crate::allocate::{arenas, textures};
 
 /// So many passes are tried depth first, too: with more of them that order hardly ever wins.
-const FEW: usize = 256;
+const FEW: usize = 64;
 
 /// The order with the fewest bytes.
 pub(crate) fn chosen(flow: &Flow, model: &Model) -> Vec<u32> {

@@ -156,7 +156,7 @@ impl Context<'_> {
         let mut writers: Vec<PassId> = inside.flat_map(|cell| grid.writers(cell)).map(|writer| uses.get(*writer).pass).collect();
         writers.sort_unstable();
         writers.dedup();
-        let names = || writers.iter().map(|pass| step(bound, *pass).name.as_str());
+        let names = || writers.iter().map(|pass| &*step(bound, *pass).name);
         let hint = did_you_mean(&named.name, names()).unwrap_or_else(|| match writers.is_empty() {
             true => "no pass writes it".to_owned(),
             false => format!("it is written by {}", list_names(names())),

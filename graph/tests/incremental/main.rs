@@ -99,7 +99,7 @@ impl World {
     }
 
     fn alive(&self) -> BTreeSet<String> {
-        self.plan.steps.iter().map(|step| step.name.clone()).collect()
+        self.plan.steps.iter().map(|step| step.name.to_string()).collect()
     }
 
     /// The revisions of the plan's inputs, which are those that some pass takes.
@@ -222,7 +222,7 @@ impl World {
     fn nodes(&self) -> Vec<(usize, Option<u32>, Node)> {
         let mut found = Vec::new();
         for (step, planned) in self.plan.steps.iter().enumerate() {
-            let pass = self.spec.passes.iter().position(|pass| pass.name == planned.name).expect("a pass");
+            let pass = self.spec.passes.iter().position(|pass| *pass.name == *planned.name).expect("a pass");
             match planned.batch.len() as u32 {
                 0 => found.push((step, None, (pass, None))),
                 count => found.extend((0..count).map(|iteration| (step, Some(iteration), (pass, Some(iteration))))),
@@ -238,7 +238,7 @@ impl World {
             .spec
             .passes
             .iter()
-            .filter(|pass| self.plan.steps.iter().any(|step| step.name == pass.name))
+            .filter(|pass| self.plan.steps.iter().any(|step| *step.name == *pass.name))
             .filter_map(|pass| pass.remembers);
         for resource in self.spec.outputs.iter().copied().chain(remembered).collect::<BTreeSet<_>>() {
             for layer in 0..self.spec.resources[resource].layers {
@@ -343,7 +343,7 @@ impl World {
             let mut device = Simulation { without: nodes.clone(), ..before.clone() };
             let _ = execute::execute(&self.plan, frame, &mut device);
             let missed = !device.wrong.is_empty() || !self.wrong_ends(&mut device).is_empty();
-            let names: Vec<&str> = nodes.iter().map(|(step, _)| self.plan.steps[*step].name.as_str()).collect();
+            let names: Vec<&str> = nodes.iter().map(|(step, _)| &*self.plan.steps[*step].name).collect();
             prop_assert!(missed, "nobody needs {:?}", names);
         }
         Ok(())

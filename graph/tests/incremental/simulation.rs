@@ -163,15 +163,15 @@ impl Simulation {
             return;
         }
         let spec = self.spec.clone();
-        let Some(index) = spec.passes.iter().position(|pass| pass.name == step.name) else { return };
+        let Some(index) = spec.passes.iter().position(|pass| *pass.name == *step.name) else { return };
         let pass = &spec.passes[index];
-        let alive = plan.steps.iter().map(|step| step.name.clone()).collect();
+        let alive = plan.steps.iter().map(|step| step.name.to_string()).collect();
         let ground = ground(&spec, &alive, (index, iteration));
         let mut reads = Vec::new();
         for used in step.uses.iter().filter(|used| used.role == Role::Read) {
             for layer in cells(&used.mips, &used.layers) {
                 let content = self.load(plan, used.resource, layer);
-                let version = used.version.and_then(|id| plan.steps.iter().find(|step| step.pass == id)).map(|step| step.name.clone());
+                let version = used.version.and_then(|id| plan.steps.iter().find(|step| step.pass == id)).map(|step| step.name.to_string());
                 self.expect(plan, run.step, used.resource, layer, version.as_ref(), content);
                 reads.push(content);
             }

@@ -456,7 +456,7 @@ impl PassSpec {
         let span = Span::NOWHERE;
         let step = Step {
             pass: PassId(place as u32),
-            name: name.clone(),
+            name: name.as_str().into(),
             span,
             shader: None,
             kind,
@@ -469,7 +469,7 @@ impl PassSpec {
             inputs: self.inputs.iter().map(|input| InputId(*input)).collect(),
         };
         let pass = Pass {
-            name,
+            name: name.into(),
             span,
             block: Default::default(),
             list: 0,

@@ -122,7 +122,7 @@ fn resource(words: &[Word<'_>]) -> Resource {
         let (width, height) = words[3].text.split_once('x').expect("an extent is WIDTHxHEIGHT");
         let mut shape = TextureShape {
             dimension: Dimension::D2,
-            formats: vec![format],
+            formats: [format].into_iter().collect(),
             format_span: words[2].span(),
             width: width.parse().expect("a width is a number"),
             height: height.parse().expect("a height is a number"),
@@ -227,7 +227,7 @@ impl Names<'_> {
         let name = words[1].text.to_owned();
         let span = words[1].span();
         let pass = Pass {
-            name: name.clone(),
+            name: name.as_str().into(),
             span,
             block: Default::default(),
             list: 0,
@@ -245,7 +245,7 @@ impl Names<'_> {
         };
         let step = Step {
             pass: PassId(index as u32),
-            name,
+            name: name.into(),
             span,
             shader: None,
             kind: StepKind::Compute { entry: "main".to_owned(), groups: Workgroups::Fixed([1, 1, 1]) },
@@ -303,6 +303,6 @@ impl Fixture {
 
     /// The names of the passes that run, in order.
     pub fn order(&self) -> Vec<String> {
-        self.schedule().order.iter().map(|pass| self.bound.steps[pass.index()].name.clone()).collect()
+        self.schedule().order.iter().map(|pass| self.bound.steps[pass.index()].name.to_string()).collect()
     }
 }

@@ -77,7 +77,7 @@ pub(crate) fn frames_are_equal_and_counted(gpu: &Gpu) {
     assert!(second.settled);
     if let Some(times) = first.times {
         assert_eq!(times.len(), 1);
-        assert_eq!(times[0].name, "fill");
+        assert_eq!(&*times[0].name, "fill");
         assert!(times[0].milliseconds >= 0.0);
     }
 }

@@ -33,7 +33,7 @@ pub(crate) struct Builder {
 pub(crate) fn shape(format_name: &str) -> TextureShape {
     TextureShape {
         dimension: Dimension::D2,
-        formats: vec![format(format_name)],
+        formats: [format(format_name)].into_iter().collect(),
         format_span: Span::NOWHERE,
         width: 8,
         height: 8,
@@ -175,7 +175,7 @@ impl Builder {
         }
         self.plan.steps.push(Step {
             pass: PassId(self.plan.steps.len() as u32),
-            name: name.to_owned(),
+            name: name.into(),
             span: Span::NOWHERE,
             shader,
             kind,
