@@ -224,14 +224,12 @@ impl<'a> Closure<'a> {
             pull.run(*node);
         }
         pull.finish_ends(!due.marked().is_empty());
-        let units = pull.units();
-        running.extend(units.iter().flat_map(|unit| self.flow.units.of(*unit as usize)));
+        running.extend(pull.units().iter().flat_map(|unit| self.flow.units.of(*unit as usize)));
         running.sort_unstable();
         let mut frame = Frame {
             runs: Vec::with_capacity(running.len()),
             changed: due.marked().to_vec(),
             restarted: restarted.marked().to_vec(),
-            units,
             ..Frame::default()
         };
         let accumulated = |node: u32| match self.flow.nodes[node as usize].run {

@@ -4,7 +4,8 @@
 //! [`super::Tracker::commit`] leaves follows from what ran: running the same passes twice holds what running them once does. So a
 //! decision that came back from the state that it had left itself comes back for ever, until something else happens.
 //!
-//! Accepted: amortised passes count on from frame to frame, so that their frames are decided every time.
+//! Accepted: amortised passes count on from frame to frame, so that their frames are decided every time, but for those that only start
+//! again.
 
 use std::sync::Arc;
 

@@ -44,8 +44,6 @@ pub struct Frame {
     /// Nodes whose value changes, and amortised ones that start anew; for the tracker.
     changed: Vec<u32>,
     restarted: Vec<u32>,
-    /// Units that run.
-    units: Vec<u32>,
     /// Resources whose declared parts are filled.
     filled: Vec<u32>,
 }

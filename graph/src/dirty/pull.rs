@@ -6,8 +6,6 @@
 //!
 //! Only memories that several resources live in are looked at: what has its own is there until it is written again.
 
-use std::collections::BTreeMap;
-
 use super::flow::Flow;
 use super::marks::Marks;
 use super::tracker::Tracker;
@@ -95,10 +93,9 @@ impl<'a> Pull<'a> {
         Pull { tracker, flow: &tracker.flow, pulled, ends: false }
     }
 
-    /// The units that run, rising.
-    pub(super) fn units(&mut self) -> Vec<u32> {
-        self.pulled.running.sort();
-        self.pulled.running.marked().to_vec()
+    /// The units that run.
+    pub(super) fn units(&self) -> &[u32] {
+        self.pulled.running.marked()
     }
 
     /// Why a node runs whose value does not change.
@@ -253,27 +250,29 @@ impl<'a> Pull<'a> {
     /// Enters declared values before the first step that touches their resource, or at the end.
     pub(super) fn fill(&mut self, frame: &mut Frame) {
         let held = &self.tracker.held;
-        let mut wanted: BTreeMap<ResourceId, Vec<(PartView, ClearValue)>> = BTreeMap::new();
+        let mut wanted: Vec<(ResourceId, (PartView, ClearValue))> = Vec::new();
         self.pulled.fills.sort();
         frame.filled = self.pulled.fills.marked().to_vec();
         for resource in frame.filled.iter().map(|resource| ResourceId(*resource)) {
             let rects = &self.flow.unmade[resource.index()];
-            wanted.entry(resource).or_default().extend(self.tracker.fills_of(resource, rects));
+            wanted.extend(self.tracker.fills_of(resource, rects).map(|fill| (resource, fill)));
         }
         for piece in &held.unheld_amortised {
             let entry = &self.flow.pieces[*piece as usize];
             let resource = entry.resource;
             let declared = self.tracker.plan.resources[resource.index()].clear.is_some();
             if declared && (self.flow.shared[resource.index()] || !self.pulled.running.contains(entry.unit)) {
-                let parts = wanted.entry(resource).or_default();
-                for fill in self.tracker.fills_of(resource, &entry.rects) {
-                    if !parts.contains(&fill) {
-                        parts.push(fill);
+                for fill in self.tracker.fills_of(resource, &entry.rects).map(|fill| (resource, fill)) {
+                    if !wanted.contains(&fill) {
+                        wanted.push(fill);
                     }
                 }
             }
         }
-        for (resource, fills) in wanted {
+        wanted.sort_by_key(|(resource, _)| *resource);
+        for same in wanted.chunk_by(|a, b| a.0 == b.0) {
+            let resource = same[0].0;
+            let fills = same.iter().map(|(_, fill)| fill.clone());
             // What the last frame left is remembered before it is filled.
             let uses = |used: &Use| used.resource == resource && used.role != Role::Recall;
             let plan = &self.tracker.plan;

@@ -173,12 +173,20 @@ impl Tracker {
             self.frames += 1;
             return;
         }
-        let amortised = |node: &u32| is_amortised(self.flow.nodes[*node as usize].run);
-        let repeats = !self.amortises() || (frame.restarted.is_empty() && !frame.changed.iter().any(amortised));
+        let repeats = !self.amortises() || self.counts_nothing_on(frame);
         let changed = self.changed_inputs(revisions).collect();
         self.habit = repeats.then(|| Habit::next(self.habit.take(), changed, frame));
         self.see(revisions);
         self.settle_frame(frame);
+    }
+
+    /// Whether amortised passes are left as an equal frame would leave them: what starts again has gathered one part, whatever it had
+    /// before, and all else stands still.
+    fn counts_nothing_on(&self, frame: &Frame) -> bool {
+        let run = |node: &u32| self.flow.nodes[*node as usize].run;
+        let restarted = |node: &u32| frame.restarted.binary_search(node).is_ok();
+        frame.restarted.iter().all(|node| matches!(run(node), Run::Accumulate(_)))
+            && frame.changed.iter().all(|node| !is_amortised(run(node)) || restarted(node))
     }
 
     fn see(&mut self, revisions: &[u64]) {
@@ -246,9 +254,7 @@ impl Tracker {
     pub fn fail(&mut self, frame: &Frame) {
         self.habit = None;
         let mut touched: BTreeSet<ResourceId> = frame.filled.iter().map(|resource| ResourceId(*resource)).collect();
-        for unit in &frame.units {
-            touched.extend(self.flow.unit_pieces.of(*unit as usize).iter().map(|piece| self.flow.pieces[*piece as usize].resource));
-        }
+        touched.extend(frame.runs.iter().flat_map(|run| self.flow.writes.of(run.step)).map(|resource| ResourceId(*resource)));
         let fills = frame.runs.iter().flat_map(|run| &run.fills).chain(&frame.last_fills);
         touched.extend(fills.map(|(part, _)| part.resource));
         for resource in touched {
