@@ -135,6 +135,7 @@ mutant 'a lost device holds everything' dirty/tracker.rs \
     '*self = Tracker { frames, ..Tracker::new(Arc::clone(&self.plan)) };' 'self.frames = frames;'
 mutant 'lost accumulation goes on' dirty/tracker.rs 'for piece in &self.held.unheld_amortised {' 'for piece in self.held.unheld_amortised.iter().take(0) {'
 mutant 'accumulation goes on after a change' dirty/tracker.rs 'self.gathered.insert(*node, 0);' 'let _ = node;'
+mutant 'what goes on gathering is a habit' dirty/tracker.rs '!is_amortised(run(node)) || restarted(node)' '!is_amortised(run(node)) || *node < u32::MAX'
 mutant 'one round for all' dirty/tracker.rs 'turn.remaining = rounds;' 'turn.remaining = rounds.min(1);'
 mutant 'who just ran comes first' dirty/tracker.rs 'turn.since = now + 1;' 'turn.since = 0;'
 mutant 'a changed resource is not remembered anew' dirty/tracker.rs \
