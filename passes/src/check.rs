@@ -7,7 +7,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::expand::types::{Dimension, TextureShape};
 use luminaire_graph::plan::{Memory, MemoryKind, Plan};
-use luminaire_graph::published::PublishedScene;
+use luminaire_graph::published::{PublishedScene, Table};
 
 use crate::textures::holder_names;
 
@@ -61,8 +61,8 @@ fn largest_excess(shape: &TextureShape, facts: &DeviceFacts) -> Option<(&'static
 
 /// What the published scene takes on the device, near enough.
 fn scene_bytes(scene: &PublishedScene) -> u64 {
-    let tables = scene.tables.values().chain(&scene.views).map(Vec::len);
-    let textures = scene.textures.iter().flat_map(|texture| texture.mips.iter().map(Vec::len));
-    let rest = [scene.vertices.len(), scene.indices.len().saturating_mul(4)];
+    let tables = scene.tables.values().map(Table::len).chain(scene.views.iter().map(Vec::len));
+    let textures = scene.materials.textures.iter().flat_map(|texture| texture.mips.iter().map(Vec::len));
+    let rest = [scene.geometry.vertices.len(), scene.geometry.indices.len().saturating_mul(4)];
     tables.chain(textures).chain(rest).fold(0, |sum, bytes| sum.saturating_add(bytes as u64))
 }

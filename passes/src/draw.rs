@@ -13,7 +13,6 @@ use luminaire_graph::published::{DrawBatch, MaterialBinding};
 use crate::bind_groups::StepGroups;
 use crate::errors::Subject;
 use crate::pipelines::{RenderKey, VertexStage};
-use crate::scene_check::draw_list;
 use crate::scene_data::SceneData;
 use crate::store::Store;
 use crate::targets::Attachments;
@@ -66,13 +65,13 @@ impl DrawStep {
         let subject = Subject::step(plan, step);
         let scene = store.scene.scene.clone();
         let batches: &[DrawBatch] =
-            plan.draw_lists.get(self.list).and_then(|(filter, view)| draw_list(&scene, *filter, *view)).unwrap_or_default();
+            plan.draw_lists.get(self.list).and_then(|(filter, view)| scene.draw_list(*filter, *view)).map_or(&[], |list| list.as_slice());
         let nothing = MaterialBinding::default();
         let mut calls = Vec::with_capacity(batches.len());
         for batch in batches.iter().filter(|batch| batch.index_count > 0 && batch.instance_count > 0) {
             let key = variant(&self.key, self.cull, batch.mirrored, batch.double_sided);
             let pipeline = store.render_pipeline(plan, step, &key)?;
-            let material = store.material_group(&subject, &self.groups, scene.materials.get(batch.material).unwrap_or(&nothing))?;
+            let material = store.material_group(&subject, &self.groups, scene.materials.bindings.get(batch.material).unwrap_or(&nothing))?;
             // The ends were checked not to overflow when the scene was taken over.
             let indices = batch.first_index..batch.first_index.saturating_add(batch.index_count);
             let instances = batch.first_instance..batch.first_instance.saturating_add(batch.instance_count);

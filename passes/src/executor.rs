@@ -65,7 +65,7 @@ impl Executor {
         let backend = start(gpu, &plan, schema, &scene)?;
         let tracker = Tracker::new(Arc::clone(&plan));
         let mut revisions = Revisions::default();
-        let now = revisions.update(&plan, schema, &PublishedScene::default(), &scene);
+        let now = revisions.update(&plan, &scene);
         Ok(Executor { plan, backend, scene, tracker, revisions, now, last: Arc::default() })
     }
 
@@ -93,7 +93,6 @@ impl Executor {
         if !problems.is_empty() {
             return Err(problems);
         }
-        let before = Arc::clone(&data.scene);
         let (data, changed) = data.successor(&gpu, &plan, &schema, Arc::clone(&scene))?;
         let timing =
             Timing::new(&gpu, if self.backend.timing.is_some() { plan.steps.len() } else { 0 }).map_err(|problem| vec![problem])?;
@@ -106,7 +105,7 @@ impl Executor {
             self.backend.store.scene.forget();
             return Err(problems);
         }
-        self.now = self.revisions.update(&plan, &schema, &before, &backend.store.scene.scene);
+        self.now = self.revisions.update(&plan, &backend.store.scene.scene);
         (self.plan, self.backend, self.scene, self.tracker, self.last) = (plan, backend, scene, tracker, Arc::default());
         Ok(())
     }
@@ -131,7 +130,7 @@ impl Executor {
         let changed = data.update(gpu, &self.plan, schema, Arc::clone(&scene))?;
         self.scene = scene;
         if !Arc::ptr_eq(&before, &data.scene) {
-            self.now = self.revisions.update(&self.plan, schema, &before, &data.scene);
+            self.now = self.revisions.update(&self.plan, &data.scene);
         }
         if changed.bound {
             bind_groups.forget_materials();

@@ -4,7 +4,7 @@
 
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
 use luminaire_graph::plan::Plan;
-use luminaire_graph::published::{DrawBatch, PublishedScene, PublishedSchema, PublishedTexture, TableKind};
+use luminaire_graph::published::{DrawBatch, PublishedGeometry, PublishedScene, PublishedSchema, PublishedTexture, TableKind};
 
 use crate::scene_data::Needs;
 
@@ -20,12 +20,12 @@ pub(crate) fn check(
     check_tables(needs, scene, limits, &mut problems);
     check_views(plan, schema, needs, scene, &mut problems);
     if needs.geometry {
-        check_geometry(schema, scene, limits, &mut problems);
+        check_geometry(schema, &scene.geometry, limits, &mut problems);
         check_draw_lists(plan, needs, scene, &mut problems);
     }
     if needs.materials {
         check_materials(schema, scene, &mut problems);
-        problems.extend(scene.textures.iter().filter_map(|texture| check_texture(texture, limits)));
+        problems.extend(scene.materials.textures.iter().filter_map(|texture| check_texture(texture, limits)));
     }
     problems
 }
@@ -58,25 +58,25 @@ fn check_views(plan: &Plan, schema: &PublishedSchema, needs: &Needs, scene: &Pub
     }
 }
 
-fn check_geometry(schema: &PublishedSchema, scene: &PublishedScene, limits: &wgpu::Limits, problems: &mut Vec<Diagnostic>) {
+fn check_geometry(schema: &PublishedSchema, geometry: &PublishedGeometry, limits: &wgpu::Limits, problems: &mut Vec<Diagnostic>) {
     let before = problems.len();
-    too_large("the scene's vertex buffer", scene.vertices.len() as u64, limits.max_buffer_size, problems);
-    too_large("the scene's index buffer", scene.indices.len() as u64 * 4, limits.max_buffer_size, problems);
+    too_large("the scene's vertex buffer", geometry.vertices.len() as u64, limits.max_buffer_size, problems);
+    too_large("the scene's index buffer", geometry.indices.len() as u64 * 4, limits.max_buffer_size, problems);
     if problems.len() > before
         && let Some(last) = problems.last_mut()
     {
         last.hint = Some("use a scene with fewer triangles".to_owned());
     }
     let stride = u64::from(schema.vertex.stride);
-    if stride == 0 || !(scene.vertices.len() as u64).is_multiple_of(stride) {
-        let message = format!("the scene's vertex buffer has {} bytes, no multiple of a vertex ({stride})", scene.vertices.len());
+    if stride == 0 || !(geometry.vertices.len() as u64).is_multiple_of(stride) {
+        let message = format!("the scene's vertex buffer has {} bytes, no multiple of a vertex ({stride})", geometry.vertices.len());
         problems.push(Diagnostic::error("execute::vertex-buffer", message));
     }
 }
 
 fn check_draw_lists(plan: &Plan, needs: &Needs, scene: &PublishedScene, problems: &mut Vec<Diagnostic>) {
     for (filter, view) in &plan.draw_lists {
-        let Some(batches) = draw_list(scene, *filter, *view) else {
+        let Some(batches) = scene.draw_list(*filter, *view) else {
             let message = format!("the scene does not publish the draw list {filter:?} from {view:?}");
             problems.push(Diagnostic::error("execute::missing-draw-list", message));
             continue;
@@ -88,27 +88,18 @@ fn check_draw_lists(plan: &Plan, needs: &Needs, scene: &PublishedScene, problems
     }
 }
 
-/// The batches of a draw list.
-pub(crate) fn draw_list(
-    scene: &PublishedScene,
-    filter: luminaire_graph::published::DrawFilter,
-    view: luminaire_graph::published::ViewKind,
-) -> Option<&[DrawBatch]> {
-    scene.draw_lists.iter().find(|(of, from, _)| (*of, *from) == (filter, view)).map(|(_, _, batches)| batches.as_slice())
-}
-
 fn batch_is_sound(batch: &DrawBatch, needs: &Needs, scene: &PublishedScene) -> bool {
-    let indices = batch.first_index.checked_add(batch.index_count).is_some_and(|end| end as usize <= scene.indices.len());
+    let indices = batch.first_index.checked_add(batch.index_count).is_some_and(|end| end as usize <= scene.geometry.indices.len());
     let instances = batch.first_instance.checked_add(batch.instance_count).is_some();
-    indices && instances && (!needs.materials || batch.material < scene.materials.len())
+    indices && instances && (!needs.materials || batch.material < scene.materials.bindings.len())
 }
 
 fn check_materials(schema: &PublishedSchema, scene: &PublishedScene, problems: &mut Vec<Diagnostic>) {
-    for (index, material) in scene.materials.iter().enumerate() {
+    for (index, material) in scene.materials.bindings.iter().enumerate() {
         let textures = material.textures.len() == schema.material_textures.len()
-            && material.textures.iter().all(|texture| *texture < scene.textures.len());
+            && material.textures.iter().all(|texture| *texture < scene.materials.textures.len());
         let samplers = material.samplers.len() == schema.material_samplers.len()
-            && material.samplers.iter().all(|sampler| *sampler < scene.samplers.len());
+            && material.samplers.iter().all(|sampler| *sampler < scene.materials.samplers.len());
         if !textures || !samplers {
             let message = format!("material {index} of the scene names textures or samplers that are not there");
             problems.push(Diagnostic::error("execute::material", message));
@@ -163,7 +154,8 @@ mod tests {
 
     #[test]
     fn batches_must_stay_in_the_index_buffer() {
-        let scene = PublishedScene { indices: vec![0, 1, 2], ..PublishedScene::default() };
+        let geometry = PublishedGeometry { indices: vec![0, 1, 2], ..PublishedGeometry::default() };
+        let scene = PublishedScene { geometry: geometry.into(), ..PublishedScene::default() };
         let batch = DrawBatch {
             material: 9,
             first_index: 0,

@@ -1,7 +1,7 @@
 //! The published scene on the device: tables, views, geometry, material textures and samplers.
 //!
-//! Only what the plan names is uploaded. A new scene is compared with the one that stands: equal bytes are left alone, other
-//! bytes of equal length are written in place, and only a new length (or new textures) makes new objects.
+//! Only what the plan names is uploaded. A new scene is compared with the one that stands, page by page: equal bytes are left alone,
+//! other bytes of equal length are written in place, and only a new length (or a new texture) makes new objects.
 //!
 //! Accepted downside: a table that changes its length often makes bind groups anew often; scenes should pad such tables.
 
@@ -10,7 +10,7 @@ use std::sync::Arc;
 
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::plan::{BindingTarget, Plan, StepKind};
-use luminaire_graph::published::{PublishedSampler, PublishedScene, PublishedSchema, PublishedTexture, TableKind};
+use luminaire_graph::published::{PublishedMaterials, PublishedSampler, PublishedScene, PublishedSchema, PublishedTexture, Table, TableKind};
 
 use crate::device::Gpu;
 use crate::errors::{Subject, catch};
@@ -192,15 +192,14 @@ impl SceneData {
             let stride = schema.tables.get(name).map_or(0, |table| table.stride);
             let usage = if *kind == TableKind::Storage { wgpu::BufferUsages::STORAGE } else { wgpu::BufferUsages::UNIFORM };
             let mut slot = self.tables.remove(name);
-            changed.bound |= put(gpu, &mut slot, name, old.tables.get(name).map(Vec::as_slice), bytes, u64::from(stride), usage);
+            changed.bound |= put_table(gpu, &mut slot, name, old.tables.get(name), bytes, u64::from(stride), usage);
             self.tables.extend(slot.map(|buffer| (name.clone(), buffer)));
         }
         for (name, row) in &self.needs.rows {
             let stride = schema.tables.get(name).map_or(0, |table| table.stride as usize);
             let bytes_of = |scene: &PublishedScene| {
                 // A row that the scene has no more is zero.
-                let start = stride * *row as usize;
-                scene.tables.get(name).and_then(|bytes| bytes.get(start..start + stride)).map_or_else(|| vec![0; stride], <[u8]>::to_vec)
+                scene.tables.get(name).and_then(|table| table.row(*row as usize)).map_or_else(|| vec![0; stride], <[u8]>::to_vec)
             };
             let (before, after) = (bytes_of(&old), bytes_of(new));
             let mut slot = self.rows.remove(&(name.clone(), *row));
@@ -221,36 +220,36 @@ impl SceneData {
         }
         if self.needs.geometry {
             // Draws fetch these anew each frame, so that replacing them binds nothing.
-            put(gpu, &mut self.vertices, "vertices", Some(&old.vertices), &new.vertices, 4, wgpu::BufferUsages::VERTEX);
-            let (before, after) = (bytemuck::cast_slice(&old.indices), bytemuck::cast_slice(&new.indices));
-            put(gpu, &mut self.indices, "indices", Some(before), after, 4, wgpu::BufferUsages::INDEX);
+            if self.vertices.is_none() || !Arc::ptr_eq(&old.geometry, &new.geometry) {
+                put(gpu, &mut self.vertices, "vertices", Some(&old.geometry.vertices), &new.geometry.vertices, 4, wgpu::BufferUsages::VERTEX);
+                let [before, after] = [&old, new].map(|scene| bytemuck::cast_slice(&scene.geometry.indices));
+                put(gpu, &mut self.indices, "indices", Some(before), after, 4, wgpu::BufferUsages::INDEX);
+            }
         }
         if self.needs.materials {
-            changed.bound |= self.upload_textures(gpu, &old.textures, &new.textures);
-            changed.bound |= self.make_samplers(gpu, &old.samplers, &new.samplers);
+            changed.bound |= self.upload_textures(gpu, &old.materials, &new.materials);
+            changed.bound |= self.make_samplers(gpu, &old.materials.samplers, &new.materials.samplers);
         }
         changed
     }
 
-    /// Whether anything was created.
-    fn upload_textures(&mut self, gpu: &Gpu, old: &[PublishedTexture], new: &[PublishedTexture]) -> bool {
-        if self.textures.len() == new.len() && old.len() == new.len() && old.iter().zip(new).all(|(old, new)| same_texture(old, new)) {
-            return false;
-        }
-        let mut waiting = 0;
-        self.textures = new
-            .iter()
-            .map(|texture| {
-                let created = create_texture(gpu, texture);
+    /// Whether anything was created. A texture that stands at the same place with the same content stays.
+    fn upload_textures(&mut self, gpu: &Gpu, old: &PublishedMaterials, new: &PublishedMaterials) -> bool {
+        let mut standing = std::mem::take(&mut self.textures).into_iter();
+        let (mut waiting, mut created) = (0, old.textures.len() != new.textures.len());
+        for (index, texture) in new.textures.iter().enumerate() {
+            let stands = standing.next().filter(|_| old.textures.get(index).is_some_and(|old| same_texture(old, texture)));
+            self.textures.push(stands.unwrap_or_else(|| {
+                created = true;
                 waiting += texture.mips.iter().map(Vec::len).sum::<usize>();
                 if waiting > UPLOAD_BATCH {
                     gpu.queue.submit(None);
                     waiting = 0;
                 }
-                created.create_view(&wgpu::TextureViewDescriptor::default())
-            })
-            .collect();
-        true
+                create_texture(gpu, texture).create_view(&wgpu::TextureViewDescriptor::default())
+            }));
+        }
+        created
     }
 
     /// Whether anything was created.
@@ -260,6 +259,32 @@ impl SceneData {
         }
         self.samplers = new.iter().map(|sampler| samplers::published(&gpu.device, sampler)).collect();
         true
+    }
+}
+
+/// Brings a table's buffer to new content, whatever changed of it. Whether a new one was created.
+fn put_table(
+    gpu: &Gpu,
+    slot: &mut Option<wgpu::Buffer>,
+    label: &str,
+    old: Option<&Table>,
+    new: &Table,
+    least: u64,
+    usage: wgpu::BufferUsages,
+) -> bool {
+    match (slot.as_ref(), old) {
+        // Rows are whole words, so that pages begin and end at multiples of 4.
+        (Some(buffer), Some(old)) if old.len() == new.len() && new.stride().is_multiple_of(4) && new.len().is_multiple_of(4) => {
+            for range in new.changes(old) {
+                let mut start = range.start as u64;
+                for bytes in new.slices(range) {
+                    gpu.queue.write_buffer(buffer, start, bytes);
+                    start += bytes.len() as u64;
+                }
+            }
+            false
+        }
+        _ => put(gpu, slot, label, old.map(Table::bytes).as_deref(), &new.bytes(), least, usage),
     }
 }
 
@@ -302,8 +327,10 @@ fn put(
     created
 }
 
-fn same_texture(old: &PublishedTexture, new: &PublishedTexture) -> bool {
-    (old.srgb, old.width, old.height) == (new.srgb, new.width, new.height) && old.mips == new.mips
+/// Names do not count.
+fn same_texture(old: &Arc<PublishedTexture>, new: &Arc<PublishedTexture>) -> bool {
+    Arc::ptr_eq(old, new)
+        || (old.srgb, old.width, old.height) == (new.srgb, new.width, new.height) && old.mips == new.mips
 }
 
 /// The texture has been checked: every level has its bytes.

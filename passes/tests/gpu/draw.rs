@@ -20,12 +20,13 @@ struct Varyings { @builtin(position) at: vec4<f32>, @location(0) depth: f32 }
 pub(crate) fn geometry(builder: &mut Builder) {
     let attribute = VertexAttribute { format: VertexFormat::Float32x3, offset: 0 };
     builder.schema.vertex = VertexSchema { stride: 12, attributes: [("position".to_owned(), attribute)].into_iter().collect() };
+    let geometry = Arc::make_mut(&mut builder.scene.geometry);
     for depth in [0.25f32, 0.75] {
         for [x, y] in [[-1.0f32, -1.0], [3.0, -1.0], [-1.0, 3.0]] {
-            builder.scene.vertices.extend([x, y, depth].iter().flat_map(|value| value.to_le_bytes()));
+            geometry.vertices.extend([x, y, depth].iter().flat_map(|value| value.to_le_bytes()));
         }
     }
-    builder.scene.indices = (0..6).collect();
+    geometry.indices = (0..6).collect();
 }
 
 pub(crate) fn batch(first_index: u32) -> DrawBatch {
@@ -43,7 +44,7 @@ pub(crate) fn batch(first_index: u32) -> DrawBatch {
 
 pub(crate) fn draw_list(builder: &mut Builder, batches: Vec<DrawBatch>) {
     builder.plan.draw_lists = vec![(DrawFilter::All, ViewKind::Camera)];
-    builder.scene.draw_lists = vec![(DrawFilter::All, ViewKind::Camera, batches)];
+    builder.scene.draw_lists = vec![DrawList { filter: DrawFilter::All, view: ViewKind::Camera, batches: batches.into() }];
 }
 
 pub(crate) fn draw(shader_color: ResourceId, depth: Option<DepthTarget>, cull: Cull) -> StepKind {
@@ -135,7 +136,7 @@ pub(crate) fn read_only_depth_is_sampled(gpu: &Gpu) {
 pub(crate) fn nothing_still_clears(gpu: &Gpu) {
     let mut builder = Builder::new();
     geometry(&mut builder);
-    (builder.scene.vertices, builder.scene.indices) = (Vec::new(), Vec::new());
+    builder.scene.geometry = Arc::default();
     draw_list(&mut builder, Vec::new());
     let color = builder.texture("color", shape("rgba8unorm"), ATTACHED);
     let shader = builder.shader("surface.wgsl", SURFACE);

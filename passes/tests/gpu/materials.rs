@@ -29,9 +29,13 @@ struct Varyings { @builtin(position) at: vec4<f32>, @location(0) slot: f32 }
     return Out(textureSample(material_color, material_sampler, vec2<f32>(0.5)) * view);
 }";
 
-fn texture(color: [u8; 4], srgb: bool) -> PublishedTexture {
+fn texture(color: [u8; 4], srgb: bool) -> Arc<PublishedTexture> {
     let mips = vec![color.repeat(4), color.to_vec()];
-    PublishedTexture { name: "color".to_owned(), srgb, width: 2, height: 2, mips }
+    Arc::new(PublishedTexture { name: "color".to_owned(), srgb, width: 2, height: 2, mips })
+}
+
+fn slots(rows: &[u32]) -> Table {
+    Table::new(4, &rows.iter().flat_map(|slot| slot.to_le_bytes()).collect::<Vec<u8>>())
 }
 
 fn textured() -> Builder {
@@ -50,13 +54,13 @@ fn textured() -> Builder {
     builder.schema.material_samplers = vec!["material_sampler".to_owned()];
     builder.schema.tables.insert("instance_slots".to_owned(), table(TableKind::Storage, 4));
     builder.schema.tables.insert("view".to_owned(), table(TableKind::View, 16));
-    let slots = [9u32, 1, 0].iter().flat_map(|slot| slot.to_le_bytes()).collect();
-    builder.scene.tables.insert("instance_slots".to_owned(), slots);
+    builder.scene.tables.insert("instance_slots".to_owned(), slots(&[9, 1, 0]));
     builder.scene.views = vec![[1.0f32; 4].iter().flat_map(|value| value.to_le_bytes()).collect()];
-    builder.scene.textures = vec![texture([255, 0, 0, 255], false), texture([0, 188, 0, 255], true)];
-    builder.scene.samplers = vec![sampler];
-    builder.scene.materials =
-        vec![MaterialBinding { textures: vec![0], samplers: vec![0] }, MaterialBinding { textures: vec![1], samplers: vec![0] }];
+    builder.scene.materials = Arc::new(PublishedMaterials {
+        textures: vec![texture([255, 0, 0, 255], false), texture([0, 188, 0, 255], true)],
+        samplers: vec![sampler],
+        bindings: [0, 1].map(|texture| MaterialBinding { textures: vec![texture], samplers: vec![0] }).to_vec(),
+    });
     builder.plan.views = vec![ViewRequest { kind: ViewKind::Camera, width: 8, height: 8 }];
     draw_list(
         &mut builder,
@@ -99,7 +103,7 @@ pub(crate) fn tables_are_updated(gpu: &Gpu) {
     assert_near(read(&executor, "color").pixel(4, 7), [0.0, 0.0, 0.0, 1.0]);
     assert_eq!(first.bind_groups_created, second.bind_groups_created, "equal lengths are written in place");
 
-    scene.draw_lists[0].2.remove(0);
+    Arc::make_mut(&mut scene.draw_lists[0].batches).remove(0);
     executor.update_scene(Arc::new(scene.clone())).expect("an update");
     let third = executor.render_frame().expect("a frame");
     assert_eq!((third.counts.draw_calls, third.pipelines_created), (1, first.pipelines_created));
@@ -107,8 +111,8 @@ pub(crate) fn tables_are_updated(gpu: &Gpu) {
     assert_near(read(&executor, "color").pixel(4, 7), [0.0; 4]);
 
     scene.views[0] = [1.0f32; 4].iter().flat_map(|value| value.to_le_bytes()).collect();
-    scene.textures[1] = texture([0, 0, 255, 255], false);
-    scene.tables.insert("instance_slots".to_owned(), [7u32, 7, 1, 1].iter().flat_map(|slot| slot.to_le_bytes()).collect());
+    Arc::make_mut(&mut scene.materials).textures[1] = texture([0, 0, 255, 255], false);
+    scene.tables.insert("instance_slots".to_owned(), slots(&[7, 7, 1, 1]));
     executor.update_scene(Arc::new(scene.clone())).expect("an update");
     executor.render_frame().expect("a frame");
     assert_near(read(&executor, "color").pixel(4, 7), [0.0, 0.0, 1.0, 1.0]);

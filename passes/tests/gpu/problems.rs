@@ -42,7 +42,7 @@ fn broken() -> Builder {
         vec![target(part(color, 0, 0), "rgba8unorm")],
         vec![("tint", BindingTarget::StorageTable("tints".to_owned()))],
     );
-    builder.scene.tables.insert("tints".to_owned(), vec![0; 16]);
+    builder.scene.tables.insert("tints".to_owned(), vec![0; 16].into());
     builder.plan.steps[1].span = Span::new(file, 0, 6);
     builder.fullscreen(
         "wrong format",
@@ -126,7 +126,7 @@ pub(crate) fn noop_scene() {
     let stages = Stages { vertex: true, fragment: true, compute: false };
     let camera = BindingTarget::UniformTable("camera".to_owned());
     builder.step("needs", Some(shader), draw(color, None, Cull::Back), stages, vec![("camera", camera)]);
-    builder.scene.tables.insert("camra".to_owned(), vec![0; 16]);
+    builder.scene.tables.insert("camra".to_owned(), vec![0; 16].into());
     let found = problems(&gpu, builder);
     let codes: Vec<&str> = found.iter().map(|problem| problem.code).collect();
     assert_eq!(codes, ["execute::missing-table", "execute::draw-list"]);

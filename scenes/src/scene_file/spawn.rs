@@ -10,7 +10,7 @@ use crate::world::{Environment, Materials, MeshInstance, Meshes, Name, Transform
 
 /// Spawns cameras, lights and objects, in this order. Objects of one shape share their mesh.
 pub(super) fn spawn(world: &mut World, checked: &Checked) {
-    world.insert_resource(Environment { sky_radiance: checked.sky_radiance });
+    world.insert_resource(Environment { sky_radiance: checked.sky_radiance, ..Environment::default() });
     for (name, camera, transform) in &checked.cameras {
         world.spawn((Name::new(name.clone()), Transform(*transform), camera.clone()));
     }

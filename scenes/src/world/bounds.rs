@@ -1,7 +1,7 @@
 //! Axis-aligned bounds of what stands in the world.
 
-use bevy_ecs::prelude::{Component, Entity, World};
-use glam::{Affine3A, Vec3};
+use bevy_ecs::prelude::{Changed, Component, DetectChanges, DetectChangesMut, Entity, Or, Without, World};
+use glam::{DVec3, Vec3};
 
 use super::{GlobalTransform, MeshInstance, Meshes};
 
@@ -40,6 +40,16 @@ impl Aabb {
         (half.length() as f32).min(f32::MAX)
     }
 
+    /// How far a point is from the box; 0 inside. In the point's unit, squared.
+    pub fn distance_squared(self, point: DVec3) -> f64 {
+        point.distance_squared(point.clamp(self.min.as_dvec3(), self.max.as_dvec3()))
+    }
+
+    /// How far the farthest corner is from a point.
+    pub fn farthest(self, point: DVec3) -> f64 {
+        self.corners().map(|corner| corner.as_dvec3().distance(point)).into_iter().fold(0.0, f64::max)
+    }
+
     /// The eight corners.
     pub fn corners(self) -> [Vec3; 8] {
         std::array::from_fn(|corner| {
@@ -49,31 +59,38 @@ impl Aabb {
     }
 }
 
-/// The bounds of a [`MeshInstance`], with what they were computed from; `None` if no vertex is finite.
+/// The bounds of a [`MeshInstance`]; `None` if no vertex is finite.
 #[derive(Component, Debug, Clone, Copy, PartialEq)]
 pub struct WorldBounds {
     /// World space.
     pub bounds: Option<Aabb>,
-    instance: MeshInstance,
-    transform: Affine3A,
 }
 
-/// Writes the [`WorldBounds`] of every mesh instance that moved or changed its mesh since. Exact: every vertex counts, for a
-/// transformed box would be loose. Needs propagated transforms.
+/// Writes the [`WorldBounds`] of every mesh instance that moved or changed its mesh since the world's trackers were cleared. Exact:
+/// every vertex counts, for a transformed box would be loose. Needs propagated transforms.
 pub fn update_bounds(world: &mut World) {
+    type Stale = Or<(Changed<MeshInstance>, Changed<GlobalTransform>, Without<WorldBounds>)>;
+    let Some(meshes) = world.get_resource_ref::<Meshes>() else { return };
+    // An instance may name a mesh that comes later.
+    let more = meshes.is_changed();
     let mut fresh = Vec::new();
-    let mut query = world.query::<(Entity, &MeshInstance, &GlobalTransform, Option<&WorldBounds>)>();
-    let Some(meshes) = world.get_resource::<Meshes>() else { return };
-    for (entity, instance, transform, known) in query.iter(world) {
-        if known.is_some_and(|known| known.instance == *instance && known.transform == transform.0) {
-            continue;
-        }
+    let bounds = |instance: &MeshInstance, transform: &GlobalTransform, meshes: &Meshes| {
         let vertices = meshes.0.get(instance.mesh).map_or(&[][..], |mesh| &mesh.vertices);
-        let bounds = Aabb::of(vertices.iter().map(|vertex| transform.0.transform_point3(Vec3::from(vertex.position))));
-        fresh.push((entity, WorldBounds { bounds, instance: *instance, transform: transform.0 }));
+        Aabb::of(vertices.iter().map(|vertex| transform.0.transform_point3(Vec3::from(vertex.position))))
+    };
+    let mut stale = world.query_filtered::<(Entity, &MeshInstance, &GlobalTransform), Stale>();
+    let mut empty = world.query::<(Entity, &MeshInstance, &GlobalTransform, &WorldBounds)>();
+    let Some(meshes) = world.get_resource::<Meshes>() else { return };
+    fresh.extend(stale.iter(world).map(|(entity, instance, transform)| (entity, bounds(instance, transform, meshes))));
+    if more {
+        let empty = empty.iter(world).filter(|(.., known)| known.bounds.is_none());
+        fresh.extend(empty.map(|(entity, instance, transform, _)| (entity, bounds(instance, transform, meshes))));
     }
     for (entity, bounds) in fresh {
-        world.entity_mut(entity).insert(bounds);
+        match world.get_mut::<WorldBounds>(entity) {
+            Some(mut known) => _ = known.set_if_neq(WorldBounds { bounds }),
+            None => _ = world.entity_mut(entity).insert(WorldBounds { bounds }),
+        }
     }
 }
 

@@ -1,8 +1,8 @@
 //! The world: components and resources of a scene, and small systems over them.
 //!
 //! Guarantees: slots (the rows of published tables) never change while their entity lives; degenerate transforms give no NaN
-//! in bounds or cameras, since whatever is not finite is left out. Accepted downside: systems walk the whole world each time;
-//! only bounds, which touch every vertex, are kept between calls.
+//! in bounds or cameras, since whatever is not finite is left out. [`update`] brings everything derived up to date, and looks only at
+//! what changed.
 
 mod bounds;
 mod camera;
@@ -12,9 +12,11 @@ mod interior;
 mod resources;
 mod slots;
 mod solid;
+mod spatial;
 mod spawn;
 mod transform;
 mod triangles;
+mod update;
 
 pub use bevy_ecs::hierarchy::{ChildOf, Children};
 pub use bevy_ecs::name::Name;
@@ -31,6 +33,8 @@ pub use interior::interior_camera;
 pub use resources::{Environment, Images, Materials, Meshes, new_world};
 pub use slots::assign_slots;
 pub(crate) use solid::solid_meshes;
+pub use spatial::{Kind, SpatialIndex};
 pub use spawn::{StoredAsset, spawn_asset, spawn_stored, store_asset};
 pub use transform::propagate_transforms;
 pub use triangles::{Hit, Triangles};
+pub use update::update;

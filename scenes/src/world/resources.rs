@@ -20,10 +20,19 @@ pub struct Materials(pub Vec<Material>);
 pub struct Images(pub Vec<Image>);
 
 /// What surrounds the scene.
-#[derive(Resource, Debug, Clone, Copy, PartialEq, Default)]
+#[derive(Resource, Debug, Clone, Copy, PartialEq)]
 pub struct Environment {
     /// Radiance from every direction where nothing stands, nits, linear Rec.709.
     pub sky_radiance: Vec3,
+    /// Lux: a point or spot light without a range ends where it gives less. Not positive is never.
+    pub least_illuminance: f32,
+}
+
+impl Default for Environment {
+    /// A black sky; lights end at a thousandth of a lux, the light of a clear night without a moon.
+    fn default() -> Environment {
+        Environment { sky_radiance: Vec3::ZERO, least_illuminance: 0.001 }
+    }
 }
 
 /// A world with nothing in it.

@@ -1,15 +1,32 @@
 //! From local transforms to world space.
 
-use bevy_ecs::prelude::{Entity, Without, World};
+use std::collections::HashSet;
+
+use bevy_ecs::prelude::{Changed, Entity, Or, World};
 use glam::Affine3A;
 
 use super::{ChildOf, Children, GlobalTransform, Transform};
 
 /// Writes every [`GlobalTransform`] that differs from the product of the transforms above it. Entities without a
-/// [`Transform`] in between count as the identity.
+/// [`Transform`] in between count as the identity. Looks only below what moved, or got another parent, since the world's trackers were
+/// cleared ([`super::update`]).
 pub fn propagate_transforms(world: &mut World) {
-    let mut stack: Vec<(Entity, Affine3A)> =
-        world.query_filtered::<Entity, Without<ChildOf>>().iter(world).map(|root| (root, Affine3A::IDENTITY)).collect();
+    let mut moved: Vec<Entity> = world.query_filtered::<Entity, Or<(Changed<Transform>, Changed<ChildOf>)>>().iter(world).collect();
+    moved.extend(world.removed::<ChildOf>().chain(world.removed::<Transform>()).filter(|entity| world.get_entity(*entity).is_ok()));
+    // Looked up and never walked.
+    let set: HashSet<Entity> = moved.iter().copied().collect();
+    let parent = |world: &World, entity: Entity| world.get::<ChildOf>(entity).map(ChildOf::parent);
+    let mut stack: Vec<(Entity, Affine3A)> = Vec::new();
+    for entity in moved {
+        let above = std::iter::successors(parent(world, entity), |above| parent(world, *above));
+        if above.clone().any(|above| set.contains(&above)) {
+            continue;
+        }
+        // Nothing above it moved, so that the nearest place above it is up to date.
+        let place = above.into_iter().find(|above| world.get::<Transform>(*above).is_some());
+        let place = place.and_then(|above| world.get::<GlobalTransform>(above)).map_or(Affine3A::IDENTITY, |global| global.0);
+        stack.push((entity, place));
+    }
     while let Some((entity, parent)) = stack.pop() {
         let local = world.get::<Transform>(entity).map(|transform| transform.0);
         let global = local.map_or(parent, |local| parent * local);

@@ -3,7 +3,16 @@
 //! The graph knows the *schema* (names, kinds and layouts, to check shaders against and to bind by name) and nothing of what
 //! the tables mean. The *data* is plain bytes: a scene fills it, an executor uploads it, and neither knows the other.
 
+mod scene;
+mod table;
+
 use indexmap::IndexMap;
+
+pub use scene::{
+    DrawBatch, DrawList, MaterialBinding, PublishedGeometry, PublishedMaterials, PublishedSampler, PublishedScene, PublishedTexture,
+    PublishedWrap,
+};
+pub use table::Table;
 
 /// Everything that shaders may declare by name and get.
 #[derive(Debug, Clone, Default)]
@@ -146,92 +155,4 @@ pub enum DrawFilter {
     Solid,
     Blended,
     All,
-}
-
-/// What a scene publishes for one frame.
-#[derive(Debug, Clone, Default)]
-pub struct PublishedScene {
-    /// Bytes by table name. Tables of kind [`TableKind::View`] stand in `views`.
-    pub tables: IndexMap<String, Vec<u8>>,
-    /// For each requested view, the bytes of the view table.
-    pub views: Vec<Vec<u8>>,
-    /// The vertex buffer.
-    pub vertices: Vec<u8>,
-    /// The index buffer.
-    pub indices: Vec<u32>,
-    /// Textures of all materials.
-    pub textures: Vec<PublishedTexture>,
-    /// Samplers of all materials.
-    pub samplers: Vec<PublishedSampler>,
-    /// Per material, what its draws bind.
-    pub materials: Vec<MaterialBinding>,
-    /// For each requested draw list, its batches.
-    pub draw_lists: Vec<(DrawFilter, ViewKind, Vec<DrawBatch>)>,
-}
-
-/// An image with its mips: RGBA, 8 bits per channel.
-#[derive(Debug, Clone)]
-pub struct PublishedTexture {
-    /// For messages.
-    pub name: String,
-    /// Sampled values are decoded from sRGB.
-    pub srgb: bool,
-    /// Of level 0.
-    pub width: u32,
-    /// Of level 0.
-    pub height: u32,
-    /// Level by level, tightly packed rows.
-    pub mips: Vec<Vec<u8>>,
-}
-
-/// Filtering and addressing.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[allow(missing_docs)]
-pub struct PublishedSampler {
-    pub mag_linear: bool,
-    pub min_linear: bool,
-    pub mip_linear: bool,
-    /// Uses level 0 alone.
-    pub no_mips: bool,
-    pub wrap_u: PublishedWrap,
-    pub wrap_v: PublishedWrap,
-}
-
-/// What happens outside of 0..1.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
-#[allow(missing_docs)]
-pub enum PublishedWrap {
-    ClampToEdge,
-    MirroredRepeat,
-    Repeat,
-}
-
-/// Indices into [`PublishedScene::textures`] and [`PublishedScene::samplers`], in the schema's order.
-#[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub struct MaterialBinding {
-    /// One per [`PublishedSchema::material_textures`].
-    pub textures: Vec<usize>,
-    /// One per [`PublishedSchema::material_samplers`].
-    pub samplers: Vec<usize>,
-}
-
-/// One instanced draw call.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct DrawBatch {
-    /// Index into [`PublishedScene::materials`].
-    pub material: usize,
-    /// First index in the index buffer.
-    pub first_index: u32,
-    /// Three per triangle.
-    pub index_count: u32,
-    /// Added to every index.
-    pub base_vertex: i32,
-    /// First position in the `instance_slots` table.
-    pub first_instance: u32,
-    /// How many.
-    pub instance_count: u32,
-    /// The transform turns the winding.
-    pub mirrored: bool,
-    /// Never culled.
-    pub double_sided: bool,
 }
