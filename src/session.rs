@@ -9,7 +9,7 @@ use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats, Gpu};
-use luminaire_scenes::publish::{PublishRequest, Published, counts, publish, schema};
+use luminaire_scenes::publish::{PublishRequest, Published, Publisher, counts, schema};
 use luminaire_scenes::scene_file;
 use luminaire_scenes::world::World;
 
@@ -113,6 +113,7 @@ pub struct Session {
     /// Warnings of the compilation and the publishing.
     pub warnings: Problems,
     executor: Executor,
+    publisher: Publisher,
     camera: Option<String>,
     facts: DeviceFacts,
     timing: bool,
@@ -145,9 +146,15 @@ fn compile_for(facts: &DeviceFacts, world: &mut World, request: &RenderRequest<'
 }
 
 /// What the world publishes for a plan.
-fn publish_for(world: &mut World, plan: &Plan, camera: Option<&str>, facts: &DeviceFacts) -> Result<Published, Vec<Diagnostic>> {
+fn publish_for(
+    publisher: &mut Publisher,
+    world: &mut World,
+    plan: &Plan,
+    camera: Option<&str>,
+    facts: &DeviceFacts,
+) -> Result<Published, Vec<Diagnostic>> {
     let (views, draw_lists) = (&plan.views, &plan.draw_lists);
-    publish(world, &PublishRequest { camera, extent: plan.extent, views, draw_lists, max_texture_2d: facts.max_texture_2d })
+    publisher.publish(world, &PublishRequest { camera, extent: plan.extent, views, draw_lists, max_texture_2d: facts.max_texture_2d })
 }
 
 impl Session {
@@ -161,7 +168,8 @@ impl Session {
     pub fn on(adapter: &Adapter, world: &mut World, request: &RenderRequest<'_>) -> Result<Session, Problems> {
         let facts = adapter.facts();
         let Compiled { plan, mut warnings, sources } = compile_for(&facts, world, request)?;
-        let made = publish_for(world, &plan, request.camera, &facts).and_then(|published| {
+        let mut publisher = Publisher::default();
+        let made = publish_for(&mut publisher, world, &plan, request.camera, &facts).and_then(|published| {
             warnings.extend(published.warnings);
             let gpu = adapter.open(&plan.requirements, request.timing)?;
             Executor::new(&gpu, Arc::clone(&plan), &schema(), Arc::new(published.scene))
@@ -174,6 +182,7 @@ impl Session {
                 recoveries: 0,
                 warnings: (warnings, sources),
                 executor,
+                publisher,
                 camera: request.camera.map(str::to_owned),
                 facts,
             }),
@@ -215,7 +224,7 @@ impl Session {
 
     /// Takes the world's present state over. What did not change will not run again.
     pub fn update(&mut self, world: &mut World) -> Result<(), Problems> {
-        let updated = publish_for(world, &self.plan, self.camera.as_deref(), &self.facts).and_then(|published| {
+        let updated = publish_for(&mut self.publisher, world, &self.plan, self.camera.as_deref(), &self.facts).and_then(|published| {
             let scene = Arc::new(published.scene);
             self.on_living_device(|executor| executor.update_scene(Arc::clone(&scene)))
         });
@@ -242,7 +251,7 @@ impl Session {
     /// device, and runs everything. After an error the last good plan goes on.
     pub fn reload(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<(), Problems> {
         let Compiled { plan, mut warnings, sources } = compile_for(&self.facts, world, request)?;
-        let adopted = publish_for(world, &plan, request.camera, &self.facts).and_then(|published| {
+        let adopted = publish_for(&mut self.publisher, world, &plan, request.camera, &self.facts).and_then(|published| {
             warnings.extend(published.warnings);
             let scene = Arc::new(published.scene);
             let open = &self.executor.gpu().facts().features;

@@ -71,7 +71,8 @@ impl DrawStep {
         for batch in batches.iter().filter(|batch| batch.index_count > 0 && batch.instance_count > 0) {
             let key = variant(&self.key, self.cull, batch.mirrored, batch.double_sided);
             let pipeline = store.render_pipeline(plan, step, &key)?;
-            let material = store.material_group(&subject, &self.groups, scene.materials.bindings.get(batch.material).unwrap_or(&nothing))?;
+            let material =
+                store.material_group(&subject, &self.groups, scene.materials.bindings.get(batch.material).unwrap_or(&nothing))?;
             // The ends were checked not to overflow when the scene was taken over.
             let indices = batch.first_index..batch.first_index.saturating_add(batch.index_count);
             let instances = batch.first_instance..batch.first_instance.saturating_add(batch.instance_count);

@@ -10,7 +10,9 @@ use std::sync::Arc;
 
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::plan::{BindingTarget, Plan, StepKind};
-use luminaire_graph::published::{PublishedMaterials, PublishedSampler, PublishedScene, PublishedSchema, PublishedTexture, Table, TableKind};
+use luminaire_graph::published::{
+    PublishedMaterials, PublishedSampler, PublishedScene, PublishedSchema, PublishedTexture, Table, TableKind,
+};
 
 use crate::device::Gpu;
 use crate::errors::{Subject, catch};
@@ -221,7 +223,15 @@ impl SceneData {
         if self.needs.geometry {
             // Draws fetch these anew each frame, so that replacing them binds nothing.
             if self.vertices.is_none() || !Arc::ptr_eq(&old.geometry, &new.geometry) {
-                put(gpu, &mut self.vertices, "vertices", Some(&old.geometry.vertices), &new.geometry.vertices, 4, wgpu::BufferUsages::VERTEX);
+                put(
+                    gpu,
+                    &mut self.vertices,
+                    "vertices",
+                    Some(&old.geometry.vertices),
+                    &new.geometry.vertices,
+                    4,
+                    wgpu::BufferUsages::VERTEX,
+                );
                 let [before, after] = [&old, new].map(|scene| bytemuck::cast_slice(&scene.geometry.indices));
                 put(gpu, &mut self.indices, "indices", Some(before), after, 4, wgpu::BufferUsages::INDEX);
             }
@@ -329,8 +339,7 @@ fn put(
 
 /// Names do not count.
 fn same_texture(old: &Arc<PublishedTexture>, new: &Arc<PublishedTexture>) -> bool {
-    Arc::ptr_eq(old, new)
-        || (old.srgb, old.width, old.height) == (new.srgb, new.width, new.height) && old.mips == new.mips
+    Arc::ptr_eq(old, new) || (old.srgb, old.width, old.height) == (new.srgb, new.width, new.height) && old.mips == new.mips
 }
 
 /// The texture has been checked: every level has its bytes.

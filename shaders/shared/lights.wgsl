@@ -32,6 +32,8 @@ struct LocalLight {
     // Strength of a spot is saturate(cosine * spot_scale + spot_offset)^2; points have 0 and 1.
     spot_scale: f32,
     spot_offset: f32,
+    // Metres beyond which a light without a range gives nothing; 0 is no end.
+    reach: f32,
 }
 
 var<storage, read> directional_lights: array<DirectionalLight>;
@@ -60,6 +62,10 @@ fn local_illumination(index: u32, position: vec3<f32>) -> Illumination {
     let range = local_lights[index].range;
     if range > 0.0 {
         window = saturate(1.0 - square(distance_squared / square(range)));
+    }
+    let reach = local_lights[index].reach;
+    if reach > 0.0 && distance_squared > square(reach) {
+        window = 0.0;
     }
     let cosine = dot(local_lights[index].direction, -direction);
     let cone = square(saturate(cosine * local_lights[index].spot_scale + local_lights[index].spot_offset));

@@ -8,10 +8,9 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::layout::ViewTable;
 use super::projection::{columns, single, vector};
-use crate::world::Aabb;
 
 /// Right, up and forward of each face: +X -X +Y -Y +Z -Z. From Vulkan's table: right is `s`, down is `t`.
-const FACES: [[DVec3; 3]; 6] = [
+pub(super) const FACES: [[DVec3; 3]; 6] = [
     [DVec3::NEG_Z, DVec3::Y, DVec3::X],
     [DVec3::Z, DVec3::Y, DVec3::NEG_X],
     [DVec3::X, DVec3::NEG_Z, DVec3::Y],
@@ -19,19 +18,6 @@ const FACES: [[DVec3; 3]; 6] = [
     [DVec3::X, DVec3::Y, DVec3::Z],
     [DVec3::NEG_X, DVec3::Y, DVec3::NEG_Z],
 ];
-
-/// Near and far plane of a light's faces, metres. Far is the farthest corner of the scene, or the light's range if that is
-/// nearer, and a hundredth more. Near is 1 cm, or a thousandth of far if that is more (so that a depth buffer
-/// keeps its precision), and never beyond a tenth of far.
-pub(super) fn planes(position: DVec3, range: Option<f32>, bounds: Option<Aabb>) -> [f64; 2] {
-    let corner = bounds
-        .map(|bounds| bounds.corners().map(|corner| corner.as_dvec3().distance(position)).into_iter().fold(0.0, f64::max))
-        .filter(|distance| *distance > 1e-4)
-        .unwrap_or(1.0);
-    let far = range.map_or(corner, |range| corner.min(f64::from(range))).max(1e-4) * 1.01;
-    let near = (far / 1000.0).max(0.01).min(far / 10.0);
-    [near, far]
-}
 
 /// The view of a face (0 to 5; others count as 5).
 pub(super) fn face_view(position: DVec3, [near, far]: [f64; 2], face: u32) -> ViewTable {
@@ -104,17 +90,5 @@ mod tests {
             let [right, up, forward] = FACES[face as usize];
             assert_eq!(right.cross(up), forward, "a left-handed frame");
         }
-    }
-
-    #[test]
-    fn planes_are_positive_and_in_order() {
-        let bounds = Aabb { min: Vec3::splat(-3.0), max: Vec3::splat(3.0) };
-        for (bounds, range) in [(None, None), (Some(bounds), None), (Some(bounds), Some(1e-6)), (Some(bounds), Some(0.05))] {
-            let [near, far] = planes(DVec3::ZERO, range, bounds);
-            assert!(0.0 < near && near < far && far.is_finite());
-        }
-        let [_, far] = planes(DVec3::ZERO, None, Some(bounds));
-        assert!(far >= 27.0_f64.sqrt());
-        assert_eq!(planes(DVec3::ZERO, Some(2.0), Some(bounds))[1], 2.02);
     }
 }

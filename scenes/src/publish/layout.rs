@@ -87,7 +87,9 @@ pub struct LocalRow {
     /// Cone attenuation is `saturate(cos * spot_scale + spot_offset)^2`; 0 and 1 for point lights.
     pub spot_scale: f32,
     pub spot_offset: f32,
-    pub pad: [f32; 2],
+    /// Metres beyond which it gives no light; 0 is without end.
+    pub reach: f32,
+    pub pad: f32,
 }
 
 /// An element of `instances`.

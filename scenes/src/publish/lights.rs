@@ -8,8 +8,9 @@ use luminaire_graph::published::{ViewKind, ViewRequest};
 
 use super::layout::{DirectionalRow, LocalRow};
 use super::projection::{CameraView, single, vector};
-use super::{cube, sun};
-use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, GlobalTransform, LocalLight, LocalSlot, rigid_axes};
+use super::reach::{Reach, reach};
+use super::sun;
+use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, Environment, GlobalTransform, LocalLight, LocalSlot, rigid_axes};
 
 /// A directional light in world space.
 #[derive(Debug, Clone, Copy)]
@@ -29,8 +30,9 @@ pub(super) struct Lamp {
     /// Candela.
     pub(super) intensity: Vec3,
     /// Metres.
-    pub(super) range: Option<f32>,
+    range: Option<f32>,
     cone: Option<Cone>,
+    pub(super) reach: Reach,
 }
 
 /// Lights by slot.
@@ -40,9 +42,10 @@ pub(super) struct Lights {
     pub(super) lamps: Vec<Option<Lamp>>,
 }
 
-/// Reads the lights. What is not finite gives no light.
-pub(super) fn collect(world: &mut World) -> Lights {
+/// Reads the lights. What is not finite gives no light. `bounds` are those of all objects, `solid` of those that throw shadows.
+pub(super) fn collect(world: &mut World, bounds: Option<Aabb>, solid: Option<Aabb>) -> Lights {
     let mut lights = Lights::default();
+    let least = world.get_resource_or_init::<Environment>().least_illuminance;
     for (light, slot, transform) in world.query::<(&DirectionalLight, &DirectionalSlot, &GlobalTransform)>().iter(world) {
         let (.., back) = rigid_axes(transform.0.matrix3);
         place(&mut lights.suns, slot.0, Sun { to_light: back, illuminance: strength(light.color, light.illuminance) });
@@ -51,13 +54,11 @@ pub(super) fn collect(world: &mut World) -> Lights {
         let (.., back) = rigid_axes(transform.0.matrix3);
         let position = Vec3::from(transform.0.translation);
         let finite = position.is_finite();
-        let lamp = Lamp {
-            position: if finite { position.as_dvec3() } else { DVec3::ZERO },
-            axis: -back,
-            intensity: if finite { strength(light.color, light.intensity) } else { Vec3::ZERO },
-            range: light.range.filter(|range| range.is_finite() && *range > 0.0),
-            cone: light.cone,
-        };
+        let position = if finite { position.as_dvec3() } else { DVec3::ZERO };
+        let intensity = if finite { strength(light.color, light.intensity) } else { Vec3::ZERO };
+        let range = light.range.filter(|range| range.is_finite() && *range > 0.0);
+        let reach = reach(position, intensity, range, least, bounds, solid);
+        let lamp = Lamp { position, axis: -back, intensity, range, cone: light.cone, reach };
         place(&mut lights.lamps, slot.0, lamp);
     }
     lights
@@ -99,10 +100,10 @@ impl Lights {
     }
 
     /// The table `local_lights`.
-    pub(super) fn local_rows(&self, bounds: Option<Aabb>) -> Vec<LocalRow> {
+    pub(super) fn local_rows(&self) -> Vec<LocalRow> {
         let row = |lamp: &Option<Lamp>| {
             let Some(lamp) = lamp else { return <LocalRow as bytemuck::Zeroable>::zeroed() };
-            let [near, far] = cube::planes(lamp.position, lamp.range, bounds);
+            let [near, far] = lamp.reach.planes;
             let [spot_scale, spot_offset] = cone_factors(lamp.cone);
             LocalRow {
                 position: vector(lamp.position),
@@ -113,7 +114,8 @@ impl Lights {
                 shadow_far: single(far),
                 spot_scale,
                 spot_offset,
-                pad: [0.0; 2],
+                reach: single(lamp.reach.end),
+                pad: 0.0,
             }
         };
         self.lamps.iter().map(row).collect()

@@ -1,12 +1,16 @@
 //! The objects of the world, and the table `instances`.
+//!
+//! Kept from frame to frame: an update looks at every object's ticks, and works on those alone that changed.
 
-use bevy_ecs::prelude::World;
+use bevy_ecs::change_detection::Tick;
+use bevy_ecs::prelude::{DetectChanges, Ref, World};
 use bytemuck::Zeroable;
 use glam::{Affine3A, DVec3, Mat4, Vec3};
+use luminaire_graph::published::Table;
 
 use super::layout::InstanceRow;
 use crate::asset::{AlphaMode, Material};
-use crate::world::{GlobalTransform, MeshInstance, ObjectSlot, WorldBounds, solid_meshes};
+use crate::world::{Aabb, GlobalTransform, MeshInstance, ObjectSlot, WorldBounds, solid_meshes};
 
 /// How an object's surface covers what is behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -27,7 +31,7 @@ impl Coverage {
 }
 
 /// An object that can be drawn.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Object {
     pub(super) slot: u32,
     pub(super) mesh: usize,
@@ -36,60 +40,183 @@ pub(super) struct Object {
     /// Drawn from both sides.
     pub(super) double_sided: bool,
     pub(super) coverage: Coverage,
-    /// Of its bounds.
-    pub(super) center: DVec3,
+    pub(super) bounds: Aabb,
     world_from_object: Affine3A,
 }
 
-/// Every object with a finite transform, a mesh and a material, by slot.
-pub(super) fn collect(world: &mut World, mesh_count: usize, materials: &[Material]) -> Vec<Object> {
-    let solid = solid_meshes(world);
-    let mut query = world.query::<(&MeshInstance, &ObjectSlot, &GlobalTransform, &WorldBounds)>();
-    let mut objects: Vec<Object> = query
-        .iter(world)
-        .filter_map(|(instance, slot, transform, bounds)| {
-            let material = materials.get(instance.material)?;
-            if instance.mesh >= mesh_count || !transform.0.is_finite() {
-                return None;
-            }
-            let coverage = Coverage::of(material);
-            Some(Object {
-                slot: slot.0,
-                mesh: instance.mesh,
-                material: instance.material,
-                mirrored: determinant(transform.0) < 0.0,
-                double_sided: material.double_sided || (coverage == Coverage::Opaque && solid.get(instance.mesh) == Some(&true)),
-                coverage,
-                center: bounds.bounds?.center().as_dvec3(),
-                world_from_object: transform.0,
-            })
-        })
-        .collect();
-    objects.sort_unstable_by_key(|object| object.slot);
-    objects
-}
+impl Object {
+    /// The middle of its bounds.
+    pub(super) fn center(&self) -> DVec3 {
+        self.bounds.center().as_dvec3()
+    }
 
-/// The table, a row per slot; never empty.
-pub(super) fn rows(objects: &[Object]) -> Vec<InstanceRow> {
-    let length = objects.last().map_or(1, |object| object.slot as usize + 1);
-    let mut rows = vec![InstanceRow::zeroed(); length];
-    for object in objects {
-        if let Some(row) = rows.get_mut(object.slot as usize) {
-            let [n0, n1, n2] = normal_columns(object.world_from_object);
-            let sign = if object.mirrored { -1.0 } else { 1.0 };
-            *row = InstanceRow {
-                world_from_object: Mat4::from(object.world_from_object).to_cols_array_2d(),
-                normal_from_object_0: n0.extend(sign).to_array(),
-                normal_from_object_1: n1.extend(0.0).to_array(),
-                normal_from_object_2: n2.extend(0.0).to_array(),
-                material: object.material as u32,
-                object: object.slot,
-                pad0: 0,
-                pad1: 0,
-            };
+    /// By what draw calls are formed: objects that agree in all but the slot share one.
+    pub(super) fn key(&self) -> Key {
+        (self.coverage, self.material, self.mesh, self.mirrored, self.slot)
+    }
+
+    fn row(&self) -> InstanceRow {
+        let [n0, n1, n2] = normal_columns(self.world_from_object);
+        let sign = if self.mirrored { -1.0 } else { 1.0 };
+        InstanceRow {
+            world_from_object: Mat4::from(self.world_from_object).to_cols_array_2d(),
+            normal_from_object_0: n0.extend(sign).to_array(),
+            normal_from_object_1: n1.extend(0.0).to_array(),
+            normal_from_object_2: n2.extend(0.0).to_array(),
+            material: self.material as u32,
+            object: self.slot,
+            pad0: 0,
+            pad1: 0,
         }
     }
-    rows
+}
+
+/// See [`Object::key`].
+pub(super) type Key = (Coverage, usize, usize, bool, u32);
+
+/// Every object with a finite transform, a mesh and a material.
+#[derive(Debug, Default)]
+pub(super) struct Objects {
+    /// By slot.
+    by_slot: Vec<Option<Object>>,
+    /// The keys of all, rising.
+    order: Vec<Key>,
+    table: Table,
+    /// Bounds of all, and of those that are not blended.
+    pub(super) bounds: Option<Aabb>,
+    pub(super) solid_bounds: Option<Aabb>,
+}
+
+/// What an update changed.
+#[derive(Debug, Default)]
+pub(super) struct Changed {
+    /// Slots whose object is another, or gone, or new.
+    pub(super) slots: Vec<u32>,
+    /// Whether what stands in draw lists is other than before: keys, not places.
+    pub(super) keys: bool,
+    /// Whether any of them is or was blended.
+    pub(super) blended: bool,
+}
+
+impl Objects {
+    /// Takes over what changed since the tick; everything without one, or where materials are others. Needs an updated world.
+    pub(super) fn update(&mut self, world: &mut World, since: Option<Tick>, mesh_count: usize, materials: &[Material]) -> Changed {
+        let solid = solid_meshes(world);
+        let now = world.change_tick();
+        let is_new = |tick: Tick| since.is_none_or(|since| tick.is_newer_than(since, now));
+        let mut query = world.query::<(Ref<'_, MeshInstance>, Ref<'_, ObjectSlot>, Ref<'_, GlobalTransform>, Ref<'_, WorldBounds>)>();
+        let mut present = vec![false; self.by_slot.len()];
+        let mut changed = Changed::default();
+        let mut fresh = Vec::new();
+        for (instance, slot, transform, bounds) in query.iter(world) {
+            let place = slot.0 as usize;
+            if present.len() <= place {
+                present.resize(place + 1, false);
+            }
+            present[place] = true;
+            let ticks = [instance.last_changed(), slot.last_changed(), transform.last_changed(), bounds.last_changed()];
+            if ticks.into_iter().any(is_new) {
+                fresh.push((slot.0, object(&instance, slot.0, &transform, bounds.bounds, mesh_count, materials, &solid)));
+            }
+        }
+        let gone = self.by_slot.iter().enumerate().filter(|(slot, object)| object.is_some() && !present[*slot]);
+        fresh.extend(gone.map(|(slot, _)| (slot as u32, None)));
+        self.by_slot.resize(present.len(), None);
+        for (slot, object) in fresh {
+            self.set(slot, object, &mut changed);
+        }
+        let rows = self.by_slot.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
+        self.by_slot.truncate(rows);
+        if self.table.is_empty() {
+            self.table = Table::new(size_of::<InstanceRow>(), &[0; size_of::<InstanceRow>()]);
+        }
+        self.table.resize(rows.max(1));
+        for slot in &changed.slots {
+            let row = self.get(*slot).map_or_else(InstanceRow::zeroed, Object::row);
+            self.table.set_row(*slot as usize, bytemuck::bytes_of(&row));
+        }
+        if !changed.slots.is_empty() {
+            self.measure();
+        }
+        changed
+    }
+
+    fn set(&mut self, slot: u32, object: Option<Object>, changed: &mut Changed) {
+        let Some(entry) = self.by_slot.get_mut(slot as usize) else { return };
+        let before = std::mem::replace(entry, object);
+        if before == object {
+            return;
+        }
+        changed.slots.push(slot);
+        changed.blended |= before.iter().chain(&object).any(|object| object.coverage == Coverage::Blended);
+        let (old, new) = (before.map(|object| object.key()), object.map(|object| object.key()));
+        if old == new {
+            changed.keys |= before.map(|object| object.double_sided) != object.map(|object| object.double_sided);
+            return;
+        }
+        changed.keys = true;
+        if let Some(Ok(place)) = old.map(|key| self.order.binary_search(&key)) {
+            self.order.remove(place);
+        }
+        if let Some(key) = new
+            && let Err(place) = self.order.binary_search(&key)
+        {
+            self.order.insert(place, key);
+        }
+    }
+
+    fn measure(&mut self) {
+        let all = || self.by_slot.iter().flatten();
+        self.bounds = all().map(|object| object.bounds).reduce(Aabb::union);
+        let solid = all().filter(|object| object.coverage != Coverage::Blended);
+        self.solid_bounds = solid.map(|object| object.bounds).reduce(Aabb::union);
+    }
+
+    /// The object of a slot.
+    pub(super) fn get(&self, slot: u32) -> Option<&Object> {
+        self.by_slot.get(slot as usize)?.as_ref()
+    }
+
+    /// All, by key.
+    pub(super) fn in_order(&self) -> impl Iterator<Item = &Object> {
+        self.order.iter().filter_map(|key| self.get(key.4))
+    }
+
+    /// How many slots there are, held or not.
+    pub(super) fn slots(&self) -> usize {
+        self.by_slot.len()
+    }
+
+    /// The table `instances`: a row per slot, never empty.
+    pub(super) fn table(&self) -> &Table {
+        &self.table
+    }
+}
+
+fn object(
+    instance: &MeshInstance,
+    slot: u32,
+    transform: &GlobalTransform,
+    bounds: Option<Aabb>,
+    mesh_count: usize,
+    materials: &[Material],
+    solid: &[bool],
+) -> Option<Object> {
+    let material = materials.get(instance.material)?;
+    if instance.mesh >= mesh_count || !transform.0.is_finite() {
+        return None;
+    }
+    let coverage = Coverage::of(material);
+    Some(Object {
+        slot,
+        mesh: instance.mesh,
+        material: instance.material,
+        mirrored: determinant(transform.0) < 0.0,
+        double_sided: material.double_sided || (coverage == Coverage::Opaque && solid.get(instance.mesh) == Some(&true)),
+        coverage,
+        bounds: bounds?,
+        world_from_object: transform.0,
+    })
 }
 
 fn columns(transform: Affine3A) -> [DVec3; 3] {

@@ -76,8 +76,8 @@ pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Light
         }
         ViewKind::LocalLight(light, face) => {
             let lamp = lights.lamps.get(light as usize).copied().flatten();
-            let position = lamp.map_or(DVec3::ZERO, |lamp| lamp.position);
-            cube::face_view(position, cube::planes(position, lamp.and_then(|lamp| lamp.range), bounds), face)
+            let (position, planes) = lamp.map_or((DVec3::ZERO, [0.01, 1.0]), |lamp| (lamp.position, lamp.reach.planes));
+            cube::face_view(position, planes, face)
         }
     }
 }

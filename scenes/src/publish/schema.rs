@@ -109,7 +109,8 @@ pub fn schema() -> PublishedSchema {
             shadow_far: "f32",
             spot_scale: "f32",
             spot_offset: "f32",
-            pad: "vec2<f32>",
+            reach: "f32",
+            pad: "f32",
         }),
     );
     add(

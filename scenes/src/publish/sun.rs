@@ -10,6 +10,7 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::layout::ViewTable;
 use super::projection::{CameraView, columns, single, vector};
+use super::reach::round_up;
 use crate::world::{Aabb, look_at};
 
 /// A fitted view.
@@ -28,7 +29,7 @@ pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, te
     let scene = LightBounds::of(bounds, right, up, back);
     let (mut middle, mut half) = (scene.middle, scene.half);
     if let Some((center, radius)) = bounds.and_then(|bounds| frustum_sphere(camera, bounds)) {
-        let radius = round_radius(radius);
+        let radius = round_up(radius);
         if radius < half {
             (middle, half) = ([center.dot(right), center.dot(up)], radius);
         }
@@ -105,11 +106,6 @@ fn frustum_sphere(camera: &CameraView, bounds: Aabb) -> Option<(DVec3, f64)> {
         Some(_) => (0.5 * (near + far), diagonal.hypot(0.5 * (far - near))),
     };
     Some((camera.pose.position + forward * along, radius))
-}
-
-/// Up to the next quarter of an octave.
-fn round_radius(radius: f64) -> f64 {
-    ((radius.max(1e-6).log2() * 4.0).ceil() / 4.0).exp2()
 }
 
 #[cfg(test)]

@@ -1,12 +1,17 @@
 //! Tests of publishing as a whole.
 
+use bevy_ecs::prelude::{Entity, World};
+use bytemuck::Pod;
 use glam::{Affine3A, Mat4, Quat, Vec3};
+use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{DrawBatch, DrawFilter, TableKind, ViewKind, ViewRequest};
 
 use super::*;
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
-use crate::world::{Camera, DirectionalLight, LocalLight, MeshInstance, Name, Transform, new_world, set_translation};
+use crate::world::{
+    Camera, ChildOf, DirectionalLight, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world, set_translation,
+};
 
 const CAMERA_VIEW: ViewRequest = ViewRequest { kind: ViewKind::Camera, width: 64, height: 48 };
 const SUN_VIEW: ViewRequest = ViewRequest { kind: ViewKind::DirectionalLight(0), width: 512, height: 512 };
@@ -37,8 +42,17 @@ fn place(world: &mut World, mesh: usize, material: usize, at: Vec3, scale: Vec3)
     world.spawn((Transform(transform), MeshInstance { mesh, material }));
 }
 
+/// What somebody publishes who has published nothing before.
+fn publish(world: &mut World, request: &PublishRequest<'_>) -> Result<Published, Vec<Diagnostic>> {
+    Publisher::default().publish(world, request)
+}
+
+fn rows<Row: Pod>(published: &Published, table: &str) -> Vec<Row> {
+    bytemuck::pod_collect_to_vec(&published.scene.tables[table].bytes())
+}
+
 fn slots(published: &Published, batch: &DrawBatch) -> Vec<u32> {
-    let table: &[u32] = bytemuck::cast_slice(&published.scene.tables["instance_slots"]);
+    let table: Vec<u32> = rows(&published, "instance_slots");
     table[batch.first_instance as usize..][..batch.instance_count as usize].to_vec()
 }
 
@@ -61,7 +75,7 @@ fn crowd() -> World {
 fn solid_objects_share_a_call_per_material_mesh_and_orientation() {
     let mut world = crowd();
     let published = publish(&mut world, &request(&[], &[(DrawFilter::Solid, ViewKind::Camera)])).unwrap();
-    let batches = &published.scene.draw_lists[0].2;
+    let batches = &published.scene.draw_lists[0].batches;
     let seen: Vec<(usize, u32, bool, bool, Vec<u32>)> = batches
         .iter()
         .map(|batch| (batch.material, batch.first_index, batch.mirrored, batch.double_sided, slots(&published, batch)))
@@ -85,13 +99,13 @@ fn blended_objects_go_back_to_front_from_their_view() {
         [(DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, ViewKind::LocalLight(0, 2)), (DrawFilter::Opaque, ViewKind::Camera)];
     let published = publish(&mut world, &request(&[], &lists)).unwrap();
     let order =
-        |list: usize| -> Vec<u32> { published.scene.draw_lists[list].2.iter().flat_map(|batch| slots(&published, batch)).collect() };
+        |list: usize| -> Vec<u32> { published.scene.draw_lists[list].batches.iter().flat_map(|batch| slots(&published, batch)).collect() };
     assert_eq!(order(0), [7, 8, 6, 9]);
-    assert_eq!(published.scene.draw_lists[0].2.len(), 3, "neighbours that agree share a call");
+    assert_eq!(published.scene.draw_lists[0].batches.len(), 3, "neighbours that agree share a call");
     // The lamp stands at (0, 3, 0); ties go by slot.
     assert_eq!(order(1)[6..], [7, 9, 6, 8]);
     assert_eq!(order(2), [2, 4, 3, 1, 0]);
-    assert!(published.scene.draw_lists[1].2.iter().all(|batch| batch.mirrored != slots(&published, batch).contains(&3)));
+    assert!(published.scene.draw_lists[1].batches.iter().all(|batch| batch.mirrored != slots(&published, batch).contains(&3)));
 }
 
 #[test]
@@ -108,12 +122,12 @@ fn tables_fit_the_schema_and_follow_slots() {
             }
         }
     }
-    let rows: &[InstanceRow] = bytemuck::cast_slice(&published.scene.tables["instances"]);
+    let rows: Vec<InstanceRow> = rows(&published, "instances");
     assert_eq!(rows.len(), 10);
     assert_eq!((rows[3].normal_from_object_0[3], rows[3].object, rows[5].material), (-1.0, 3, 2));
-    let environment: &[EnvironmentTable] = bytemuck::cast_slice(&published.scene.tables["environment"]);
+    let environment: Vec<EnvironmentTable> = rows(&published, "environment");
     assert_eq!((environment[0].light_unit, environment[0].directional_count, environment[0].local_count), (32.0, 1, 1));
-    let suns: &[DirectionalRow] = bytemuck::cast_slice(&published.scene.tables["directional_lights"]);
+    let suns: Vec<DirectionalRow> = rows(&published, "directional_lights");
     let view: &ViewTable = bytemuck::from_bytes(&published.scene.views[1]);
     assert_eq!(suns[0].shadow_from_world, view.projection_from_world);
     assert!((suns[0].shadow_depth_range - view.far).abs() < 1e-6 && suns[0].shadow_texel_size > 0.0);
@@ -123,7 +137,7 @@ fn tables_fit_the_schema_and_follow_slots() {
 #[test]
 fn a_light_without_a_shadow_view_has_zeros_there() {
     let published = publish(&mut stage(), &request(&[], &[])).unwrap();
-    let suns: &[DirectionalRow] = bytemuck::cast_slice(&published.scene.tables["directional_lights"]);
+    let suns: Vec<DirectionalRow> = rows(&published, "directional_lights");
     assert_eq!((suns[0].shadow_texel_size, suns[0].shadow_from_world), (0.0, [[0.0; 4]; 4]));
 }
 
@@ -132,7 +146,7 @@ fn cube_views_reach_what_their_light_shines_on() {
     let mut world = crowd();
     let views: Vec<ViewRequest> = (0..6).map(|face| ViewRequest { kind: ViewKind::LocalLight(0, face), width: 64, height: 64 }).collect();
     let published = publish(&mut world, &request(&views, &[])).unwrap();
-    let lamps: &[LocalRow] = bytemuck::cast_slice(&published.scene.tables["local_lights"]);
+    let lamps: Vec<LocalRow> = rows(&published, "local_lights");
     let down: &ViewTable = bytemuck::from_bytes(&published.scene.views[3]);
     assert_eq!((lamps[0].shadow_near, lamps[0].shadow_far), (down.near, down.far));
     let at_origin = Mat4::from_cols_array_2d(&down.projection_from_world).project_point3(Vec3::ZERO);
@@ -153,9 +167,9 @@ fn equal_worlds_publish_equal_bytes_and_a_second_time_changes_nothing() {
 #[test]
 fn textures_follow_changes_of_materials() {
     let mut world = stage();
-    assert_eq!(publish(&mut world, &request(&[], &[])).unwrap().scene.materials.len(), 4);
+    assert_eq!(publish(&mut world, &request(&[], &[])).unwrap().scene.materials.bindings.len(), 4);
     world.resource_mut::<Materials>().0.push(Material::default());
-    assert_eq!(publish(&mut world, &request(&[], &[])).unwrap().scene.materials.len(), 5);
+    assert_eq!(publish(&mut world, &request(&[], &[])).unwrap().scene.materials.bindings.len(), 5);
 }
 
 #[test]
@@ -165,7 +179,7 @@ fn moving_a_node_moves_its_row() {
     publish(&mut world, &request(&[], &[])).unwrap();
     set_translation(&mut world, "moving_box", Vec3::new(-1.6, 0.6, -1.4)).unwrap();
     let published = publish(&mut world, &request(&[], &[])).unwrap();
-    let rows: &[InstanceRow] = bytemuck::cast_slice(&published.scene.tables["instances"]);
+    let rows: Vec<InstanceRow> = rows(&published, "instances");
     assert_eq!(rows[0].world_from_object[3], [-1.6, 0.6, -1.4, 1.0]);
 }
 
@@ -173,8 +187,8 @@ fn moving_a_node_moves_its_row() {
 fn an_empty_world_publishes_without_nan() {
     let published = publish(&mut new_world(), &request(&[CAMERA_VIEW], &[(DrawFilter::All, ViewKind::Camera)])).unwrap();
     assert!(published.scene.tables.values().all(|table| !table.is_empty()));
-    assert!(published.scene.draw_lists[0].2.is_empty());
-    let camera: &CameraTable = bytemuck::from_bytes(&published.scene.tables["camera"]);
+    assert!(published.scene.draw_lists[0].batches.is_empty());
+    let camera = rows::<CameraTable>(&published, "camera")[0];
     assert!(Mat4::from_cols_array_2d(&camera.world_from_projection).is_finite() && camera.exposure == 1.0);
     assert!(counts(&new_world()).values().all(|count| *count == 0));
 }
@@ -197,7 +211,8 @@ fn degenerate_worlds_publish_finite_numbers() {
         world.spawn((Transform(transform), MeshInstance { mesh: 0, material: 3 }));
         let published = publish(&mut world, &request(&views, &[(DrawFilter::All, ViewKind::LocalLight(1, 0))])).unwrap();
         for (name, table) in published.scene.tables.iter().filter(|(name, _)| *name != "instance_slots") {
-            let numbers: &[f32] = bytemuck::cast_slice(table);
+            let bytes = table.bytes();
+            let numbers: &[f32] = bytemuck::cast_slice(&bytes);
             assert!(numbers.iter().all(|number| !number.is_nan()), "{name} of {transform:?}");
         }
         for view in &published.scene.views {
@@ -225,4 +240,72 @@ fn counts_are_rows_of_lights_and_instances_of_surfaces() {
     let counts: Vec<(String, u32)> = counts(&world).into_iter().collect();
     let expected = [1, 1, 0, 1, 5, 1, 4];
     assert_eq!(counts, COUNT_NAMES.iter().zip(expected).map(|(name, count)| ((*name).to_owned(), count)).collect::<Vec<_>>());
+}
+
+/// What was published before leaves no trace: random changes, published by one who remembers and by one who does not.
+mod memory {
+    use proptest::prelude::*;
+
+    use super::*;
+
+    fn change(world: &mut World, things: &mut Vec<Entity>, (what, which, at): (u8, usize, [f32; 3])) {
+        let at = Vec3::from_array(at);
+        let some = (!things.is_empty()).then(|| things[which % things.len().max(1)]);
+        match (what, some) {
+            (0, Some(thing)) => {
+                things.retain(|other| *other != thing);
+                world.despawn(thing);
+                things.retain(|other| world.get_entity(*other).is_ok());
+            }
+            (1..=3, Some(thing)) => world.get_mut::<Transform>(thing).unwrap().0.translation = at.into(),
+            (4, Some(thing)) => world.get_mut::<Transform>(thing).unwrap().0 = Affine3A::from_scale(at),
+            (5, Some(thing)) if which % 2 == 0 => _ = world.entity_mut(thing).insert(MeshInstance { mesh: which % 2, material: which % 4 }),
+            (6, Some(thing)) => {
+                let above = things[0];
+                if above == thing {
+                    world.entity_mut(thing).remove::<ChildOf>();
+                } else {
+                    world.entity_mut(thing).insert(ChildOf(above));
+                }
+            }
+            (7, _) => world.resource_mut::<Materials>().0[which % 4].base_color[0] = at.x,
+            (8, _) => {
+                world.resource_mut::<Materials>().0[which % 4].alpha_mode = if at.x > 0.0 { AlphaMode::Blend } else { AlphaMode::Opaque }
+            }
+            (9, _) => world.resource_mut::<Meshes>().0.push(cuboid("more", at.abs() + 0.1, 0)),
+            (10, _) => {
+                let lamp = LocalLight { color: Vec3::ONE, intensity: at.x.abs() * 0.01, range: (at.y > 0.0).then_some(at.y), cone: None };
+                things.push(world.spawn((Transform(Affine3A::from_translation(at)), lamp)).id());
+            }
+            _ => things
+                .push(world.spawn((Transform(Affine3A::from_translation(at)), MeshInstance { mesh: which % 2, material: which % 4 })).id()),
+        }
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+        #[test]
+        fn leaves_no_trace(steps in prop::collection::vec(prop::collection::vec((0_u8..16, 0_usize..40, prop::array::uniform3(-6.0_f32..6.0)), 0..6), 1..14)) {
+            let mut world = crowd();
+            let lamp = |face| ViewKind::LocalLight(0, face);
+            let mut lists: Vec<(DrawFilter, ViewKind)> = (0..6).map(|face| (DrawFilter::Opaque, lamp(face))).collect();
+            lists.extend((0..6).map(|face| (DrawFilter::Masked, lamp(face))));
+            let views = [(DrawFilter::Solid, ViewKind::Camera), (DrawFilter::Opaque, ViewKind::DirectionalLight(0)), (DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, lamp(2))];
+            lists.extend(views);
+            let wanted = request(&[CAMERA_VIEW, SUN_VIEW], &lists);
+            let (mut publisher, mut things) = (Publisher::default(), Vec::new());
+            for changes in steps {
+                for entry in changes {
+                    change(&mut world, &mut things, entry);
+                }
+                let kept = publisher.publish(&mut world, &wanted).unwrap().scene;
+                let fresh = publish(&mut world, &wanted).unwrap().scene;
+                prop_assert_eq!(kept.tables, fresh.tables);
+                prop_assert_eq!(kept.views, fresh.views);
+                prop_assert_eq!(kept.draw_lists, fresh.draw_lists);
+                prop_assert!(kept.geometry == fresh.geometry && kept.materials == fresh.materials);
+            }
+        }
+    }
 }

@@ -5,10 +5,10 @@
 
 use std::collections::BTreeMap;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use std::sync::{Mutex, PoisonError};
+use std::sync::{Arc, Mutex, PoisonError};
 
 use luminaire_graph::diagnostic::Diagnostic;
-use luminaire_graph::published::{MaterialBinding, PublishedSampler, PublishedTexture, PublishedWrap};
+use luminaire_graph::published::{MaterialBinding, PublishedMaterials, PublishedSampler, PublishedTexture, PublishedWrap};
 
 use super::coverage;
 use super::materials::texture_uses;
@@ -18,19 +18,23 @@ use crate::asset::{AlphaMode, Image, Material, MipFilter, Sampler, Wrap};
 /// What draws of the materials bind.
 #[derive(Debug, Clone, Default)]
 pub(super) struct TextureSet {
-    pub(super) textures: Vec<PublishedTexture>,
-    pub(super) samplers: Vec<PublishedSampler>,
-    pub(super) bindings: Vec<MaterialBinding>,
+    pub(super) published: PublishedMaterials,
+    /// Those that come from images.
+    built: Built,
     /// `publish::image-reduced`.
     pub(super) warnings: Vec<Diagnostic>,
 }
 
+/// Textures by the image and its role.
+type Built = BTreeMap<(usize, Role), Arc<PublishedTexture>>;
+
 const WHITE: usize = 0;
 const FLAT_NORMAL: usize = 1;
 
-/// Builds all textures. Images that materials name and that are not there count as missing.
-pub(super) fn build(materials: &[Material], images: &[Image], max_edge: u32) -> TextureSet {
-    let mut set = TextureSet { samplers: vec![sampler(Sampler::default())], ..TextureSet::default() };
+/// Builds all textures but those of `before`, which was built from the same images. Images that materials name and that are not there
+/// count as missing.
+pub(super) fn build(materials: &[Material], images: &[Image], max_edge: u32, before: Option<&TextureSet>) -> TextureSet {
+    let mut set = PublishedMaterials { samplers: vec![sampler(Sampler::default())], ..PublishedMaterials::default() };
     let mut jobs: Vec<(usize, Role)> = Vec::new();
     let mut known: BTreeMap<(usize, Role), usize> = BTreeMap::new();
     for material in materials {
@@ -52,26 +56,29 @@ pub(super) fn build(materials: &[Material], images: &[Image], max_edge: u32) -> 
         set.bindings.push(binding);
     }
     set.textures = vec![single("white", [255; 4]), single("flat normal", [128, 128, 255, 255])];
-    for ((index, role), levels) in jobs.iter().zip(build_levels(&jobs, images, max_edge)) {
+    let mut built: Built = before.map(|before| before.built.clone()).unwrap_or_default();
+    built.retain(|job, _| known.contains_key(job));
+    let missing: Vec<(usize, Role)> = jobs.iter().copied().filter(|job| !built.contains_key(job)).collect();
+    for ((index, role), levels) in missing.iter().zip(build_levels(&missing, images, max_edge)) {
         let Some(image) = images.get(*index) else { continue };
-        if (levels.width, levels.height) != (image.width, image.height) && !set.warnings.iter().any(|known| names(known, image)) {
-            set.warnings.push(Diagnostic::warning(
+        let Levels { width, height, bytes: mips } = levels;
+        built.insert((*index, *role), Arc::new(PublishedTexture { name: image.name.clone(), srgb: role.is_srgb(), width, height, mips }));
+    }
+    let mut warnings: Vec<Diagnostic> = Vec::new();
+    for job in &jobs {
+        let (Some(image), Some(texture)) = (images.get(job.0), built.get(job)) else { continue };
+        if (texture.width, texture.height) != (image.width, image.height) && !warnings.iter().any(|known| names(known, image)) {
+            warnings.push(Diagnostic::warning(
                 "publish::image-reduced",
                 format!(
                     "image `{}` has {}x{} texels, more than the {max_edge} along an edge that the device allows; it is reduced to {}x{}",
-                    image.name, image.width, image.height, levels.width, levels.height
+                    image.name, image.width, image.height, texture.width, texture.height
                 ),
             ));
         }
-        set.textures.push(PublishedTexture {
-            name: image.name.clone(),
-            srgb: role.is_srgb(),
-            width: levels.width,
-            height: levels.height,
-            mips: levels.bytes,
-        });
+        set.textures.push(Arc::clone(texture));
     }
-    set
+    TextureSet { published: set, built, warnings }
 }
 
 fn names(warning: &Diagnostic, image: &Image) -> bool {
@@ -116,8 +123,8 @@ fn build_levels(jobs: &[(usize, Role)], images: &[Image], max_edge: u32) -> Vec<
     done.into_iter().map(|(_, levels)| levels).collect()
 }
 
-fn single(name: &str, texel: [u8; 4]) -> PublishedTexture {
-    PublishedTexture { name: name.to_owned(), srgb: false, width: 1, height: 1, mips: vec![texel.to_vec()] }
+fn single(name: &str, texel: [u8; 4]) -> Arc<PublishedTexture> {
+    Arc::new(PublishedTexture { name: name.to_owned(), srgb: false, width: 1, height: 1, mips: vec![texel.to_vec()] })
 }
 
 fn sampler(sampler: Sampler) -> PublishedSampler {
@@ -163,22 +170,34 @@ mod tests {
             },
             Material { base_color_texture: texture(0), alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() },
         ];
-        let set = build(&materials, &images, 8192);
+        let TextureSet { published: set, warnings, .. } = build(&materials, &images, 8192, None);
         let names: Vec<(&str, bool)> = set.textures.iter().map(|texture| (texture.name.as_str(), texture.srgb)).collect();
         assert_eq!(names, [("white", false), ("flat normal", false), ("b", true), ("a", true), ("a", false), ("a", true)]);
         assert_eq!(set.bindings[0].textures, [2, 0, 1, 0, 3, 0, 0]);
         assert_eq!(set.bindings[0].samplers, [0, 0, 0, 0, 1, 0, 0]);
         assert_eq!(set.bindings[1].textures, [3, 4, 1, 4, 0, 0, 0]);
         assert_eq!(set.bindings[2].textures, [5, 0, 1, 0, 0, 0, 0]);
-        assert!(set.warnings.is_empty());
+        assert!(warnings.is_empty());
     }
 
     #[test]
     fn too_large_images_are_reduced_and_reported_once() {
         let materials = [Material { base_color_texture: texture(0), occlusion_texture: texture(0), ..Material::default() }];
-        let set = build(&materials, &[image("large", 16)], 4);
-        assert_eq!((set.textures[2].width, set.textures[3].width), (4, 4));
+        let set = build(&materials, &[image("large", 16)], 4, None);
+        assert_eq!((set.published.textures[2].width, set.published.textures[3].width), (4, 4));
         assert_eq!(set.warnings.len(), 1);
         assert_eq!(set.warnings[0].code, "publish::image-reduced");
+    }
+
+    #[test]
+    fn what_stands_is_not_built_again() {
+        let images = [image("a", 4), image("b", 4)];
+        let one = [Material { base_color_texture: texture(0), ..Material::default() }];
+        let two = [Material { base_color_texture: texture(1), emissive_texture: texture(0), ..Material::default() }];
+        let before = build(&one, &images, 8192, None);
+        let after = build(&two, &images, 8192, Some(&before));
+        let anew = build(&two, &images, 8192, None);
+        assert_eq!(after.published, anew.published);
+        assert!(Arc::ptr_eq(&after.published.textures[3], &before.published.textures[2]));
     }
 }

@@ -40,7 +40,7 @@ pub(super) fn add(world: &mut World, file: &str) -> Diagnostic {
     let axes = Mat3::from_cols(right.as_vec3(), up.as_vec3(), back.as_vec3());
     let sun = DirectionalLight { color: Vec3::ONE, illuminance: ILLUMINANCE };
     world.spawn((Name::new("default sun"), Transform(Affine3A::from_mat3(axes)), sun));
-    world.insert_resource(Environment { sky_radiance: SKY });
+    world.insert_resource(Environment { sky_radiance: SKY, ..Environment::default() });
     let mut added = format!("a sun of {ILLUMINANCE:.2} lx");
     if let Some(room) = room {
         let half_width = 0.5 * (room.max.x - room.min.x).min(room.max.z - room.min.z);

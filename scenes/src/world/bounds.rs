@@ -40,6 +40,11 @@ impl Aabb {
         (half.length() as f32).min(f32::MAX)
     }
 
+    /// Whether they have a point in common.
+    pub fn meets(self, other: Aabb) -> bool {
+        self.min.cmple(other.max).all() && other.min.cmple(self.max).all()
+    }
+
     /// How far a point is from the box; 0 inside. In the point's unit, squared.
     pub fn distance_squared(self, point: DVec3) -> f64 {
         point.distance_squared(point.clamp(self.min.as_dvec3(), self.max.as_dvec3()))

@@ -5,11 +5,11 @@
 
 use std::collections::BTreeMap;
 
-use bevy_ecs::prelude::{Changed, Component, Entity, Resource, World};
+use bevy_ecs::prelude::{Added, Changed, Component, Entity, Or, Resource, With, World};
 use glam::{DVec3, Vec3};
-use rstar::{AABB, Envelope, PointDistance, RTree, RTreeObject};
+use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
-use super::{Aabb, Camera, DirectionalLight, GlobalTransform, LocalLight, WorldBounds};
+use super::{Aabb, Camera, GlobalTransform, LocalLight, WorldBounds};
 
 /// What kind of thing is looked for.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
@@ -34,13 +34,22 @@ impl RTreeObject for Entry {
     type Envelope = AABB<[f32; 3]>;
 
     fn envelope(&self) -> Self::Envelope {
-        AABB::from_corners(self.bounds.min.to_array(), self.bounds.max.to_array())
+        envelope(self.bounds)
     }
+}
+
+/// The tree multiplies extents: beyond this, metres, everything counts as equally far.
+const FAR: f32 = 1e9;
+
+fn envelope(bounds: Aabb) -> AABB<[f32; 3]> {
+    let [min, max] = [bounds.min, bounds.max].map(|corner| corner.clamp(Vec3::splat(-FAR), Vec3::splat(FAR)).to_array());
+    AABB::from_corners(min, max)
 }
 
 impl PointDistance for Entry {
     fn distance_2(&self, point: &[f32; 3]) -> f32 {
-        self.envelope().distance_2(point)
+        let at = Vec3::from_array(*point);
+        at.distance_squared(at.clamp(self.bounds.min, self.bounds.max))
     }
 }
 
@@ -54,8 +63,8 @@ pub struct SpatialIndex {
 impl SpatialIndex {
     /// The things of a kind whose bounds meet a box, by entity.
     pub fn in_box(&self, kind: Kind, bounds: Aabb) -> Vec<Entity> {
-        let envelope = AABB::from_corners(bounds.min.to_array(), bounds.max.to_array());
-        let found = self.tree.locate_in_envelope_intersecting(&envelope).filter(|entry| entry.kind == kind);
+        let meets = |entry: &&Entry| entry.kind == kind && entry.bounds.meets(bounds);
+        let found = self.tree.locate_in_envelope_intersecting(envelope(bounds)).filter(meets);
         sorted(found.map(|entry| entry.entity))
     }
 
@@ -66,14 +75,14 @@ impl SpatialIndex {
         let middle = center.as_vec3();
         let slack = Vec3::splat(middle.abs().max_element() * 1e-6);
         let (min, max) = (middle - reach - slack, middle + reach + slack);
-        let envelope = AABB::from_corners(min.max(Vec3::MIN).to_array(), max.min(Vec3::MAX).to_array());
+        let around = envelope(Aabb { min, max });
         let near = |entry: &&Entry| entry.kind == kind && entry.bounds.distance_squared(center) <= radius * radius;
-        sorted(self.tree.locate_in_envelope_intersecting(&envelope).filter(near).map(|entry| entry.entity))
+        sorted(self.tree.locate_in_envelope_intersecting(around).filter(near).map(|entry| entry.entity))
     }
 
     /// The nearest things of a kind, at most `count`, nearest first, with their distances in metres.
     pub fn nearest(&self, kind: Kind, point: DVec3, count: usize) -> Vec<(Entity, f64)> {
-        let of_kind = self.tree.nearest_neighbor_iter(&point.as_vec3().to_array()).filter(|entry| entry.kind == kind);
+        let of_kind = self.tree.nearest_neighbor_iter(point.as_vec3().to_array()).filter(|entry| entry.kind == kind);
         let mut found: Vec<(Entity, f64)> =
             of_kind.take(count).map(|entry| (entry.entity, entry.bounds.distance_squared(point).sqrt())).collect();
         found.sort_by(|a, b| a.1.total_cmp(&b.1).then(order(a.0).cmp(&order(b.0))));
@@ -84,7 +93,11 @@ impl SpatialIndex {
     pub(super) fn update(world: &mut World) {
         let mut index = world.remove_resource::<SpatialIndex>().unwrap_or_default();
         let mut fresh: Vec<((Entity, Kind), Option<Aabb>)> = Vec::new();
-        let objects = world.query_filtered::<(Entity, &WorldBounds), Changed<WorldBounds>>().iter(world).map(|(entity, bounds)| ((entity, Kind::Object), bounds.bounds)).collect::<Vec<_>>();
+        let objects = world
+            .query_filtered::<(Entity, &WorldBounds), Changed<WorldBounds>>()
+            .iter(world)
+            .map(|(entity, bounds)| ((entity, Kind::Object), bounds.bounds))
+            .collect::<Vec<_>>();
         fresh.extend(objects);
         places::<LocalLight>(world, Kind::Light, &mut fresh);
         places::<Camera>(world, Kind::Camera, &mut fresh);
@@ -127,8 +140,8 @@ impl SpatialIndex {
 }
 
 fn places<Of: Component>(world: &mut World, kind: Kind, fresh: &mut Vec<((Entity, Kind), Option<Aabb>)>) {
-    type Moved<Of> = bevy_ecs::prelude::Or<(Changed<GlobalTransform>, bevy_ecs::prelude::Added<Of>)>;
-    let mut query = world.query_filtered::<(Entity, &GlobalTransform), (bevy_ecs::prelude::With<Of>, Moved<Of>)>();
+    type Moved<Of> = Or<(Changed<GlobalTransform>, Added<Of>)>;
+    let mut query = world.query_filtered::<(Entity, &GlobalTransform), (With<Of>, Moved<Of>)>();
     for (entity, transform) in query.iter(world) {
         let place = Vec3::from(transform.0.translation);
         fresh.push(((entity, kind), place.is_finite().then_some(Aabb { min: place, max: place })));

@@ -1,0 +1,112 @@
+//! From a world to what it publishes, again and again.
+
+use bevy_ecs::change_detection::Tick;
+use bevy_ecs::prelude::World;
+use bevy_ecs::world::WorldId;
+use bytemuck::Pod;
+use glam::DVec3;
+use indexmap::IndexMap;
+use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::published::{PublishedScene, Table, ViewKind};
+
+use super::casters::Casters;
+use super::draws::{Distance, DrawInput, Draws};
+use super::geometry::{self, Geometry};
+use super::objects::Objects;
+use super::projection::CameraView;
+use super::request::{self, PublishRequest, Published};
+use super::texture_cache::TextureCache;
+use super::{environment, lights, materials};
+use crate::world::{Environment, Materials, Meshes, camera_pose, update};
+
+/// Publishes a world, and remembers what it published.
+#[derive(Debug, Default)]
+pub struct Publisher {
+    /// The world, and its tick when it was last published.
+    seen: Option<(WorldId, Tick)>,
+    /// When the materials changed last.
+    materials: Option<Tick>,
+    geometry: Geometry,
+    textures: TextureCache,
+    objects: Objects,
+    casters: Casters,
+    draws: Draws,
+    tables: IndexMap<String, Table>,
+}
+
+impl Publisher {
+    /// Publishes the world as it is now, and brings it up to date first ([`update`]).
+    /// Errors: `world::unknown-camera`, `publish::unknown-light`, `publish::unknown-face`, `publish::too-much-geometry`.
+    pub fn publish(&mut self, world: &mut World, request: &PublishRequest<'_>) -> Result<Published, Vec<Diagnostic>> {
+        if self.seen.is_some_and(|(known, _)| known != world.id()) {
+            *self = Publisher::default();
+        }
+        update(world);
+        let materials = world.get_resource_or_init::<Materials>().0.clone();
+        let of_materials = world.get_resource_change_ticks::<Materials>().map(|ticks| ticks.changed);
+        let same_materials = self.materials == of_materials;
+        let meshes = world.get_resource_or_init::<Meshes>();
+        let (mesh_count, same_meshes) = (meshes.0.len(), self.geometry.ranges.len() == meshes.0.len());
+        let mut problems = Vec::new();
+        if !same_meshes {
+            match geometry::build(&meshes.0) {
+                Ok(geometry) => self.geometry = geometry,
+                Err(problem) => problems.push(problem),
+            }
+        }
+        let since = self.seen.map(|(_, tick)| tick).filter(|_| same_materials && same_meshes);
+        let changed = self.objects.update(world, since, mesh_count, &materials);
+        (self.seen, self.materials) = (Some((world.id(), world.last_change_tick())), of_materials);
+        let bounds = self.objects.bounds;
+        let lights = lights::collect(world, bounds, self.objects.solid_bounds);
+        problems.extend(request::check(request, &lights));
+        let pose = camera_pose(world, request.camera, bounds, request.aspect()).map_err(|problem| problems.push(problem)).ok();
+
+        let wanted = request.draw_lists;
+        let faces = self.casters.update(world, wanted.iter().map(|(_, view)| *view), &lights, &self.objects, &changed);
+        let (Some(pose), true) = (pose, problems.is_empty()) else {
+            // Lists were not brought up to date with what was taken over.
+            *self = Publisher::default();
+            return Err(problems);
+        };
+        let camera = CameraView::new(pose, request.aspect());
+        let input =
+            DrawInput { objects: &self.objects, changed: &changed, ranges: &self.geometry.ranges, casters: &self.casters, faces: &faces };
+        let draw_lists = self.draws.update(wanted, &input, |view| match view {
+            ViewKind::Camera => Distance::from_camera(&camera),
+            ViewKind::DirectionalLight(light) => {
+                Distance::Along(lights.suns.get(light as usize).copied().flatten().map_or(-DVec3::Y, |sun| -sun.to_light))
+            }
+            ViewKind::LocalLight(light, _) => {
+                Distance::From(lights.lamps.get(light as usize).copied().flatten().map_or(DVec3::ZERO, |lamp| lamp.position))
+            }
+        });
+        let solid = self.objects.solid_bounds;
+        let view_bytes = |view| bytemuck::bytes_of(&request::view_table(view, &camera, &lights, solid)).to_vec();
+        let views = request.views.iter().map(view_bytes).collect();
+        let environment = *world.get_resource_or_init::<Environment>();
+        let environment = environment::table(environment, &lights, &materials, bounds);
+        self.set("camera", &[camera.table()]);
+        self.set("environment", &[environment]);
+        self.set("directional_lights", &lights.directional_rows(&camera, solid, request.views));
+        self.set("local_lights", &lights.local_rows());
+        if !same_materials || !self.tables.contains_key("materials") {
+            self.set("materials", &materials::rows(&materials));
+        }
+        self.tables.insert("instances".to_owned(), self.objects.table().clone());
+        self.tables.insert("instance_slots".to_owned(), self.draws.table().clone());
+        let (materials, warnings) = self.textures.update(world, &materials, request.max_texture_2d);
+        let scene = PublishedScene { tables: self.tables.clone(), views, geometry: self.geometry.published.clone(), materials, draw_lists };
+        Ok(Published { scene, warnings: warnings.to_vec() })
+    }
+
+    /// Sets a table; one zeroed row stands for none, since a storage binding must not be empty.
+    fn set<Row: Pod>(&mut self, name: &str, rows: &[Row]) {
+        let none = [Row::zeroed()];
+        let bytes: &[u8] = bytemuck::cast_slice(if rows.is_empty() { &none } else { rows });
+        match self.tables.get_mut(name) {
+            Some(table) => table.set(bytes),
+            None => _ = self.tables.insert(name.to_owned(), Table::new(size_of::<Row>(), bytes)),
+        }
+    }
+}
