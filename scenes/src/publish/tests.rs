@@ -47,12 +47,12 @@ fn publish(world: &mut World, request: &PublishRequest<'_>) -> Result<Published,
     Publisher::default().publish(world, request)
 }
 
-fn rows<Row: Pod>(published: &Published, table: &str) -> Vec<Row> {
+fn table_rows<Row: Pod>(published: &Published, table: &str) -> Vec<Row> {
     bytemuck::pod_collect_to_vec(&published.scene.tables[table].bytes())
 }
 
 fn slots(published: &Published, batch: &DrawBatch) -> Vec<u32> {
-    let table: Vec<u32> = rows(&published, "instance_slots");
+    let table: Vec<u32> = table_rows(&published, "instance_slots");
     table[batch.first_instance as usize..][..batch.instance_count as usize].to_vec()
 }
 
@@ -122,12 +122,12 @@ fn tables_fit_the_schema_and_follow_slots() {
             }
         }
     }
-    let rows: Vec<InstanceRow> = rows(&published, "instances");
+    let rows: Vec<InstanceRow> = table_rows(&published, "instances");
     assert_eq!(rows.len(), 10);
     assert_eq!((rows[3].normal_from_object_0[3], rows[3].object, rows[5].material), (-1.0, 3, 2));
-    let environment: Vec<EnvironmentTable> = rows(&published, "environment");
+    let environment: Vec<EnvironmentTable> = table_rows(&published, "environment");
     assert_eq!((environment[0].light_unit, environment[0].directional_count, environment[0].local_count), (32.0, 1, 1));
-    let suns: Vec<DirectionalRow> = rows(&published, "directional_lights");
+    let suns: Vec<DirectionalRow> = table_rows(&published, "directional_lights");
     let view: &ViewTable = bytemuck::from_bytes(&published.scene.views[1]);
     assert_eq!(suns[0].shadow_from_world, view.projection_from_world);
     assert!((suns[0].shadow_depth_range - view.far).abs() < 1e-6 && suns[0].shadow_texel_size > 0.0);
@@ -137,7 +137,7 @@ fn tables_fit_the_schema_and_follow_slots() {
 #[test]
 fn a_light_without_a_shadow_view_has_zeros_there() {
     let published = publish(&mut stage(), &request(&[], &[])).unwrap();
-    let suns: Vec<DirectionalRow> = rows(&published, "directional_lights");
+    let suns: Vec<DirectionalRow> = table_rows(&published, "directional_lights");
     assert_eq!((suns[0].shadow_texel_size, suns[0].shadow_from_world), (0.0, [[0.0; 4]; 4]));
 }
 
@@ -146,7 +146,7 @@ fn cube_views_reach_what_their_light_shines_on() {
     let mut world = crowd();
     let views: Vec<ViewRequest> = (0..6).map(|face| ViewRequest { kind: ViewKind::LocalLight(0, face), width: 64, height: 64 }).collect();
     let published = publish(&mut world, &request(&views, &[])).unwrap();
-    let lamps: Vec<LocalRow> = rows(&published, "local_lights");
+    let lamps: Vec<LocalRow> = table_rows(&published, "local_lights");
     let down: &ViewTable = bytemuck::from_bytes(&published.scene.views[3]);
     assert_eq!((lamps[0].shadow_near, lamps[0].shadow_far), (down.near, down.far));
     let at_origin = Mat4::from_cols_array_2d(&down.projection_from_world).project_point3(Vec3::ZERO);
@@ -179,7 +179,7 @@ fn moving_a_node_moves_its_row() {
     publish(&mut world, &request(&[], &[])).unwrap();
     set_translation(&mut world, "moving_box", Vec3::new(-1.6, 0.6, -1.4)).unwrap();
     let published = publish(&mut world, &request(&[], &[])).unwrap();
-    let rows: Vec<InstanceRow> = rows(&published, "instances");
+    let rows: Vec<InstanceRow> = table_rows(&published, "instances");
     assert_eq!(rows[0].world_from_object[3], [-1.6, 0.6, -1.4, 1.0]);
 }
 
@@ -188,7 +188,7 @@ fn an_empty_world_publishes_without_nan() {
     let published = publish(&mut new_world(), &request(&[CAMERA_VIEW], &[(DrawFilter::All, ViewKind::Camera)])).unwrap();
     assert!(published.scene.tables.values().all(|table| !table.is_empty()));
     assert!(published.scene.draw_lists[0].batches.is_empty());
-    let camera = rows::<CameraTable>(&published, "camera")[0];
+    let camera = table_rows::<CameraTable>(&published, "camera")[0];
     assert!(Mat4::from_cols_array_2d(&camera.world_from_projection).is_finite() && camera.exposure == 1.0);
     assert!(counts(&new_world()).values().all(|count| *count == 0));
 }
