@@ -9,7 +9,7 @@ use super::checks::{FAR, Problems, SMALL};
 use super::document::{CameraDoc, LightDoc, MaterialDoc, ObjectDoc, SceneDoc, ShapeDoc};
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::MAX_SECTORS;
-use crate::world::{Camera, Cone, DirectionalLight, LocalLight, look_at};
+use crate::world::{Camera, Cone, DirectionalLight, Exposure, LocalLight, look_at};
 
 /// Brightest light or emission, in its unit: ten billion is beyond the sun's disc seen from the ground.
 const BRIGHT: f32 = 1e10;
@@ -202,8 +202,11 @@ fn camera(name: &str, entry: &CameraDoc, problems: &mut Problems) -> (Camera, Af
     }
     let yfov = problems.number(&format!("`fov` of {of}"), entry.fov.as_ref(), 45.0, 1.0..=170.0).to_radians();
     let near = problems.number(&format!("`near` of {of}"), entry.near.as_ref(), 0.01, SMALL..=FAR);
-    let ev100 = entry.ev100.as_ref().map(|value| problems.number(&format!("`ev100` of {of}"), Some(value), 0.0, -40.0..=40.0));
-    let camera = Camera { name: name.to_owned(), projection: Projection::Perspective { yfov, near, far: None }, ev100 };
+    let exposure = entry
+        .ev100
+        .as_ref()
+        .map_or(Exposure::Unchanged, |value| Exposure::Ev100(problems.number(&format!("`ev100` of {of}"), Some(value), 0.0, -40.0..=40.0)));
+    let camera = Camera { name: name.to_owned(), projection: Projection::Perspective { yfov, near, far: None }, exposure };
     (camera, facing(position, target - position))
 }
 

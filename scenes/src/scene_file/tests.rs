@@ -10,7 +10,7 @@ use luminaire_graph::syntax::read_document;
 use super::document::SceneDoc;
 use super::{load_scene, load_scene_text};
 use crate::publish::counts;
-use crate::world::{Camera, DirectionalLight, GlobalTransform, Name, find_by_name, propagate_transforms, select_camera};
+use crate::world::{Camera, DirectionalLight, Exposure, GlobalTransform, Name, find_by_name, propagate_transforms, select_camera};
 
 const CORNELL: &str = include_str!("../../cornell.ron");
 const MATERIALS: &str = include_str!("../../materials.ron");
@@ -57,7 +57,7 @@ fn cameras_and_lights_stand_and_look_as_written() {
     propagate_transforms(&mut world);
     let default = select_camera(&mut world, None).unwrap().unwrap();
     assert_eq!(world.get::<Name>(default).unwrap().as_str(), "a");
-    assert_eq!(world.get::<Camera>(default).unwrap().ev100, Some(3.0));
+    assert_eq!(world.get::<Camera>(default).unwrap().exposure, Exposure::Ev100(3.0));
     let forward = |world: &crate::World, entity| world.get::<GlobalTransform>(entity).unwrap().0.transform_vector3(Vec3::NEG_Z);
     assert_eq!(forward(&world, default), Vec3::NEG_Z);
     assert_eq!(world.get::<GlobalTransform>(default).unwrap().0.translation, Vec3A::new(1.0, 2.0, 3.0));

@@ -10,7 +10,8 @@ use crate::asset::Projection;
 #[require(GlobalTransform)]
 pub struct Transform(pub Affine3A);
 
-/// To world space; written by [`super::propagate_transforms`]. Not finite where a product overflowed: such entities publish nothing.
+/// To world space; written by [`super::propagate_transforms`]. Not finite where a product overflowed: such entities publish
+/// nothing.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
 pub struct GlobalTransform(pub Affine3A);
 
@@ -65,8 +66,20 @@ pub struct Camera {
     pub name: String,
     /// The vertical extent counts; the horizontal one follows the image.
     pub projection: Projection,
-    /// Exposure value at ISO 100; `None` leaves radiance as it is.
-    pub ev100: Option<f32>,
+    /// What radiance is multiplied with before it is shown.
+    pub exposure: Exposure,
+}
+
+/// A factor on radiance. What is not finite counts as [`Exposure::Unchanged`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Exposure {
+    /// 1: radiance stays as it is.
+    #[default]
+    Unchanged,
+    /// By an exposure value at ISO 100: `1 / (1.2 * 2^EV100)`.
+    Ev100(f32),
+    /// By hand: this factor; less than 0 counts as 0.
+    Factor(f32),
 }
 
 /// Row of a [`MeshInstance`] in the table `instances`.
