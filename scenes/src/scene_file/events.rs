@@ -15,6 +15,9 @@ use crate::asset::Projection;
 use crate::timeline::{Action, Ease, Event, Field, Goal, NodeRef, Property};
 use crate::world::{Exposure, Materials};
 
+/// A property of some node.
+type OfNode = fn(NodeRef) -> Property;
+
 /// All events by time; those of the same time stay in the order in which they are written. `batches` holds what each event spawns.
 pub(super) fn events(
     document: &SceneDoc,
@@ -83,8 +86,8 @@ impl One<'_, '_> {
             ActionDoc::Light { light, intensity, color, during, ease } => {
                 let of = format!("the change of light `{light}`");
                 let values = [
-                    intensity.as_ref().map(|value| (Property::Intensity as fn(_) -> _, self.scalar("intensity", &of, value, 0.0..=BRIGHT))),
-                    color.as_ref().map(|value| (Property::Color as fn(_) -> _, self.color("color", &of, value, COLORFUL))),
+                    intensity.as_ref().map(|value| (Property::Intensity as OfNode, self.scalar("intensity", &of, value, 0.0..=BRIGHT))),
+                    color.as_ref().map(|value| (Property::Color as OfNode, self.color("color", &of, value, COLORFUL))),
                 ];
                 let timing = self.timing(during.as_ref(), *ease);
                 let node = names.find(light, at, self.problems).filter(|node| self.is_light(names, *node, light));
@@ -94,9 +97,9 @@ impl One<'_, '_> {
                 let of = format!("the change of camera `{camera}`");
                 let fov_value = fov.as_ref().map(|value| self.problems.number(&format!("`fov` of {of}"), Some(value), 45.0, 1.0..=170.0));
                 let values = [
-                    ev100.as_ref().map(|value| (Property::Exposure as fn(_) -> _, self.scalar("ev100", &of, value, -40.0..=40.0))),
-                    exposure.as_ref().map(|value| (Property::Exposure as fn(_) -> _, self.scalar("exposure", &of, value, 0.0..=BRIGHT))),
-                    fov_value.map(|fov| (Property::FieldOfView as fn(_) -> _, Vec4::new(fov.to_radians(), 0.0, 0.0, 0.0))),
+                    ev100.as_ref().map(|value| (Property::Exposure as OfNode, self.scalar("ev100", &of, value, -40.0..=40.0))),
+                    exposure.as_ref().map(|value| (Property::Exposure as OfNode, self.scalar("exposure", &of, value, 0.0..=BRIGHT))),
+                    fov_value.map(|fov| (Property::FieldOfView as OfNode, Vec4::new(fov.to_radians(), 0.0, 0.0, 0.0))),
                 ];
                 let timing = self.timing(during.as_ref(), *ease);
                 let node = names.find(camera, at, self.problems);
@@ -273,7 +276,7 @@ impl One<'_, '_> {
         node: Option<NodeRef>,
         name: &Text,
         fields: &str,
-        values: [Option<(fn(NodeRef) -> Property, Vec4)>; N],
+        values: [Option<(OfNode, Vec4)>; N],
         timing: (f64, Ease),
     ) {
         if values.iter().all(Option::is_none) {
