@@ -339,8 +339,11 @@ fn nodes_may_morph_one_mesh_differently() {
     assert_eq!((heights, asset.meshes.len()), (vec![0.25, 0.5, 0.25], 2));
 }
 
-/// Two nodes with an animation of these channels; each has node, path, interpolation, times and values.
-fn animated(channels: &[(usize, &str, &str, &[f32], &[f32])]) -> File {
+/// Node, path, interpolation, times and values.
+type ChannelOf<'a> = (usize, &'a str, &'a str, &'a [f32], &'a [f32]);
+
+/// Nodes with an animation of these channels: the first two are in the scene, and the second has a matrix.
+fn animated(channels: &[ChannelOf<'_>]) -> File {
     let mut file = square().indices(&[0, 1, 2]).set("/nodes", json!([{"mesh": 0}, {"matrix": glam::Mat4::IDENTITY.to_cols_array()}, {}]));
     let (mut samplers, mut list) = (Vec::new(), Vec::new());
     for (node, path, interpolation, times, values) in channels {
@@ -375,7 +378,7 @@ fn animations_are_kept_for_the_nodes_of_the_scene() {
 #[test]
 fn channels_that_cannot_be_played_are_warnings() {
     let still = [0.0; 6];
-    let of = |channel: (usize, &str, &str, &[f32], &[f32])| {
+    let of = |channel: ChannelOf<'_>| {
         let loaded = animated(&[channel]).load().unwrap();
         let codes: Vec<_> = loaded.warnings.iter().map(|warning| warning.code).collect();
         (codes, loaded.asset.animations.into_iter().next().unwrap())
