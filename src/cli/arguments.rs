@@ -36,6 +36,8 @@ pub(crate) enum Command {
     Plan(PlanArguments),
     /// Show what each change makes run and why, what shares memory and why
     Explain(ExplainArguments),
+    /// Show what a scene holds: nodes, meshes, materials, lights, cameras, timeline, bounds, memory
+    Scene(SceneArguments),
     /// Show the adapter, its limits, and what comes with the program
     Info,
 }
@@ -128,6 +130,29 @@ pub(crate) struct ExplainArguments {
     /// Plan for these outputs alone; all if not given
     #[arg(long, value_name = "NAME")]
     pub output: Vec<String>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// The scene: a .gltf, .glb or scene .ron file
+    pub scene: String,
+    /// How to show it
+    #[arg(long, value_enum, default_value_t = SceneFormat::Text)]
+    pub format: SceneFormat,
+    /// The folder that the scene's files may come from; the scene file's own if not given
+    #[arg(long, value_name = "DIR")]
+    pub asset_root: Option<PathBuf>,
+    /// Show the scene at this time, in seconds; as it was loaded, if not given
+    #[arg(long, value_name = "SECONDS")]
+    pub time: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SceneFormat {
+    /// For people
+    Text,
+    /// For programs
+    Json,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -6,6 +6,7 @@ mod explain;
 mod info;
 mod plan;
 mod render;
+mod scene;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -24,6 +25,7 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::Plan(arguments) => plan::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Scene(arguments) => scene::run(arguments),
         Command::Info => info::run(),
     };
     if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }

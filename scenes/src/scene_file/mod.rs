@@ -19,15 +19,24 @@
 //! the scene file come before those of its glTF files. A glTF file by itself is a scene, too.
 //! Accepted downside: materials of a scene file have no textures.
 
-mod checked;
+mod assets;
+mod check;
 mod checks;
 mod default_light;
 mod document;
+mod events;
 mod load;
+mod names;
 mod spawn;
 
 #[cfg(test)]
 mod tests;
 
-pub use document::{CameraDoc, EnvironmentDoc, FileDoc, LightDoc, MaterialDoc, Number, ObjectDoc, SceneDoc, ShapeDoc, Vector};
+pub(crate) use check::{Declaration, Kind, glow};
+pub(crate) use checks::rotation_of;
+pub use document::{
+    ActionDoc, CameraDoc, EaseDoc, EnvironmentDoc, EventDoc, FileDoc, GroupDoc, LightDoc, MarkerDoc, MaterialDoc, Number, ObjectDoc,
+    RepeatDoc, SceneDoc, Seconds, ShapeDoc, Vector,
+};
 pub use load::{LoadedScene, load_scene, load_scene_text};
+pub(crate) use spawn::{Spawned, spawn};

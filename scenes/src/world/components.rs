@@ -1,7 +1,7 @@
 //! What entities carry. Hierarchy and names are `bevy_ecs`'s own ([`super::ChildOf`], [`super::Children`], [`super::Name`]).
 
 use bevy_ecs::prelude::Component;
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, UVec3, Vec2, Vec3};
 
 use crate::asset::Projection;
 
@@ -56,6 +56,57 @@ pub struct Cone {
     pub inner: f32,
     /// Where light ends.
     pub outer: f32,
+}
+
+/// Light from a rectangle around the entity's origin that faces along its -Z. The mesh of the same entity shows it.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct RectangleLight {
+    /// Linear Rec.709.
+    pub color: Vec3,
+    /// Nits, the same in all directions, not negative.
+    pub luminance: f32,
+    /// Width along x and height along y, metres.
+    pub size: Vec2,
+    /// Emits to +Z as well.
+    pub two_sided: bool,
+}
+
+/// Where probes for diffuse light stand: a grid around the entity's origin, along its axes.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct ProbeVolume {
+    /// Probes along x, y and z, at least 1 each.
+    pub counts: UVec3,
+    /// From probe to probe, metres, greater than zero.
+    pub spacing: Vec3,
+}
+
+impl ProbeVolume {
+    /// Where the probe of these indices stands, in the entity's space.
+    pub fn position(&self, index: UVec3) -> Vec3 {
+        (index.as_vec3() - 0.5 * (self.counts.as_vec3() - 1.0)) * self.spacing
+    }
+}
+
+/// A probe for reflections at the entity's origin.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct ReflectionProbe {
+    /// Edges of the box around it in which it counts, metres.
+    pub size: Vec3,
+    /// Nothing nearer is captured, metres.
+    pub near: f32,
+    /// Nothing farther is captured, metres.
+    pub far: f32,
+}
+
+/// A box around the entity's origin, along its axes, that techniques can be limited to.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct Volume {
+    /// Edges, metres.
+    pub size: Vec3,
 }
 
 /// A camera, looking along the entity's -Z. Scale of its transform is ignored.

@@ -1,5 +1,6 @@
 //! From an asset to entities.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use bevy_ecs::prelude::{Entity, World};
@@ -22,13 +23,39 @@ pub struct StoredAsset {
     first_mesh: usize,
     /// Per mesh of the asset, its material in the world.
     mesh_materials: Vec<usize>,
+    /// Rows of its materials in the world, in its own order.
+    materials: Range<usize>,
+}
+
+impl StoredAsset {
+    /// Its nodes, in the order in which they are spawned.
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Rows of its materials in the world.
+    pub(crate) fn materials(&self) -> Range<usize> {
+        self.materials.clone()
+    }
+
+    /// The same asset with other materials of its own: `change` makes the new one of an old one, or leaves it.
+    pub(crate) fn with_materials(&self, world: &mut World, mut change: impl FnMut(&Material) -> Option<Material>) -> StoredAsset {
+        let materials = &mut world.get_resource_or_init::<Materials>().0;
+        let first = materials.len();
+        let own: Vec<Material> = materials.get(self.materials.clone()).unwrap_or_default().to_vec();
+        materials.extend(own.into_iter().map(|material| change(&material).unwrap_or(material)));
+        let moved = |material: &usize| material - self.materials.start + first;
+        StoredAsset { mesh_materials: self.mesh_materials.iter().map(moved).collect(), materials: first..materials.len(), ..self.clone() }
+    }
 }
 
 /// Moves an asset's meshes, materials and images into the world and returns the rest.
 pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
     let first_image = append(&mut world.get_resource_or_init::<Images>().0, asset.images);
     let materials = asset.materials.into_iter().map(|material| shift_images(material, first_image)).collect();
-    let first_material = append(&mut world.get_resource_or_init::<Materials>().0, materials);
+    let rows = &mut world.get_resource_or_init::<Materials>().0;
+    let first_material = append(rows, materials);
+    let materials = first_material..rows.len();
     let mut meshes = asset.meshes;
     for mesh in &mut meshes {
         mesh.material += first_material;
@@ -36,7 +63,7 @@ pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
     let mesh_materials = meshes.iter().map(|mesh| mesh.material).collect();
     let first_mesh = append(&mut world.get_resource_or_init::<Meshes>().0, meshes);
     let animations = asset.animations.into();
-    StoredAsset { nodes: asset.nodes, lights: asset.lights, cameras: asset.cameras, animations, first_mesh, mesh_materials }
+    StoredAsset { nodes: asset.nodes, lights: asset.lights, cameras: asset.cameras, animations, first_mesh, mesh_materials, materials }
 }
 
 /// Spawns a copy of the asset's nodes below `parent` (or at the root) and returns an entity per node, in the asset's order.
