@@ -7,6 +7,10 @@ use luminaire_graph::diagnostic::{Diagnostic, render};
 use luminaire_graph::source::SourceMap;
 use luminaire_graph::syntax::read_document;
 
+mod hostile;
+mod nodes;
+mod reference;
+
 use super::SceneDoc;
 use super::{load_scene, load_scene_text};
 use crate::publish::counts;
