@@ -22,6 +22,7 @@ fn action(timeline: &Timeline, materials: &[Material], action: &Action) -> Strin
             let names: Vec<String> = names.map(|declared| format!("{} `{}`", declared.kind.what(), declared.name.value)).collect();
             format!("spawn {}", names.join(", "))
         }
+        Action::Animate { node, play } => format!("play clip {} of `{}`", play.clip, timeline.name(*node)),
         Action::Remove(node) => format!("remove `{}`", timeline.name(*node)),
         Action::Reparent { node, parent, keep_place } => {
             let parent = parent.map_or_else(|| "the world".to_owned(), |parent| format!("`{}`", timeline.name(parent)));
@@ -45,7 +46,7 @@ fn change(timeline: &Timeline, materials: &[Material], property: Property, goal:
         (Property::Scale(node), _) => format!("scale {} to {all}", of(node)),
         (Property::Intensity(node), _) => format!("intensity of {} to {scalar}", of(node)),
         (Property::Color(node), _) => format!("color of {} to {all}", of(node)),
-        (Property::Exposure(node), _) => format!("EV100 of {} to {scalar}", of(node)),
+        (Property::Exposure(node), _) => format!("exposure of {} to {scalar}", of(node)),
         (Property::FieldOfView(node), Goal::Value(value)) => {
             format!("field of view of {} to {} degrees", of(node), number(value.x.to_degrees()))
         }

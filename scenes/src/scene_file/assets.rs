@@ -8,10 +8,10 @@ use bevy_ecs::prelude::World;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 use luminaire_graph::syntax::document::Text;
 
-use super::check::{FileUse, material};
+use super::check::{FileUse, Play, material, motion};
 use super::checks::Problems;
 use super::load::{extension, load_gltf};
-use crate::world::{Materials, StoredAsset, store_asset};
+use crate::world::{Materials, Repeat, StoredAsset, store_asset};
 
 /// Where a scene's files may lie.
 #[derive(Clone, Copy)]
@@ -22,19 +22,29 @@ pub(super) struct Place<'a> {
     pub(super) root: Option<&'a Path>,
 }
 
+/// A file as an entry uses it.
+#[derive(Debug, Clone)]
+pub(crate) struct UsedFile {
+    pub(crate) asset: Arc<StoredAsset>,
+    /// How it plays, if its entry says so.
+    pub(crate) play: Option<Play>,
+}
+
 /// Loads every file and stores it in the world; `None` where that failed, which is among the problems then.
-pub(super) fn load_files(
-    world: &mut World,
-    uses: &[FileUse],
-    place: Option<Place<'_>>,
-    problems: &mut Problems,
-) -> Vec<Option<Arc<StoredAsset>>> {
+pub(super) fn load_files(world: &mut World, uses: &[FileUse], place: Option<Place<'_>>, problems: &mut Problems) -> Vec<Option<UsedFile>> {
     let mut known: BTreeMap<PathBuf, Option<Arc<StoredAsset>>> = BTreeMap::new();
     uses.iter()
         .map(|used| {
             let path = resolve(&used.path, place).map_err(|problem| problems.add(problem)).ok()?;
             let asset = known.entry(path).or_insert_with_key(|path| load(world, path, used, place, problems)).clone()?;
-            if used.materials.is_empty() { Some(asset) } else { Some(Arc::new(with_changes(world, &asset, used, problems))) }
+            let asset = if used.materials.is_empty() { asset } else { Arc::new(with_changes(world, &asset, used, problems)) };
+            let of = format!("file `{}`", used.name);
+            let entry = used.animation.as_ref();
+            let play = entry.and_then(|entry| motion::play(&asset, &of, used.path.span, entry, used.appears, problems));
+            // A file that comes later plays from its beginning, and not from where it would be by then.
+            let later = || Play { clip: 0, speed: 1.0, start: used.appears, repeat: Repeat::Loop };
+            let play = play.or_else(|| (used.appears > 0.0 && !asset.animations().is_empty()).then(later));
+            Some(UsedFile { asset, play })
         })
         .collect()
 }

@@ -7,9 +7,9 @@ use glam::{Vec3, Vec4};
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 use luminaire_graph::syntax::document::Text;
 
-use super::check::Kind;
+use super::check::{Kind, motion};
 use super::checks::{BRIGHT, COLORFUL, FAR, Problems, rotation_of};
-use super::document::{ActionDoc, EaseDoc, EventDoc, Number, SceneDoc, Seconds, Vector};
+use super::document::{ActionDoc, AnimationDoc, EaseDoc, EventDoc, Number, SceneDoc, Seconds, Vector};
 use super::names::Names;
 use crate::asset::Projection;
 use crate::timeline::{Action, Ease, Event, Field, Goal, NodeRef, Property};
@@ -90,17 +90,32 @@ impl One<'_, '_> {
                 let node = names.find(light, at, self.problems).filter(|node| self.is_light(names, *node, light));
                 self.changes(node, light, "`intensity` or `color`", values, timing);
             }
-            ActionDoc::Camera { camera, ev100, fov, during, ease } => {
+            ActionDoc::Camera { camera, ev100, exposure, fov, during, ease } => {
                 let of = format!("the change of camera `{camera}`");
                 let fov_value = fov.as_ref().map(|value| self.problems.number(&format!("`fov` of {of}"), Some(value), 45.0, 1.0..=170.0));
                 let values = [
                     ev100.as_ref().map(|value| (Property::Exposure as fn(_) -> _, self.scalar("ev100", &of, value, -40.0..=40.0))),
+                    exposure.as_ref().map(|value| (Property::Exposure as fn(_) -> _, self.scalar("exposure", &of, value, 0.0..=BRIGHT))),
                     fov_value.map(|fov| (Property::FieldOfView as fn(_) -> _, Vec4::new(fov.to_radians(), 0.0, 0.0, 0.0))),
                 ];
                 let timing = self.timing(during.as_ref(), *ease);
                 let node = names.find(camera, at, self.problems);
-                let node = node.filter(|node| self.is_camera(names, *node, camera, ev100.is_some(), fov.is_some()));
-                self.changes(node, camera, "`ev100` or `fov`", values, timing);
+                let node = node.filter(|node| self.is_camera(names, *node, camera, [ev100.is_some(), exposure.is_some(), fov.is_some()]));
+                self.changes(node, camera, "`ev100`, `exposure` or `fov`", values, timing);
+            }
+            ActionDoc::Animate { file, clip, speed, again } => {
+                let entry = AnimationDoc { clip: clip.clone(), speed: *speed, start: None, again: *again };
+                let Some(node) = names.find(file, at, self.problems) else { return };
+                match names.file(node).filter(|_| node.inside.is_none()) {
+                    Some(asset) => {
+                        let play = motion::play(asset, &format!("file `{file}`"), file.span, &entry, at, self.problems);
+                        self.events.extend(play.map(|play| Event { at, action: Action::Animate { node, play } }));
+                    }
+                    None => self.problems.add(
+                        Diagnostic::error("scene::wrong-kind", format!("`{file}` is no glTF file"))
+                            .at(file.span, "must be an entry of `files`"),
+                    ),
+                }
             }
             ActionDoc::Sky { radiance, during, ease } => {
                 let radiance = self.color("radiance", "the change of the sky", radiance, BRIGHT);
@@ -207,23 +222,22 @@ impl One<'_, '_> {
         fits
     }
 
-    fn is_camera(&mut self, names: &Names<'_>, node: NodeRef, name: &Text, exposure: bool, fov: bool) -> bool {
-        let Some(Kind::Camera(camera)) = names.declaration(node).map(|declaration| &declaration.kind) else {
+    fn is_camera(&mut self, names: &Names<'_>, node: NodeRef, name: &Text, [ev100, factor, fov]: [bool; 3]) -> bool {
+        let Some(Kind::Camera { camera, .. }) = names.declaration(node).map(|declaration| &declaration.kind) else {
             let message = format!("`{name}` is no camera of the scene file");
             self.problems.add(Diagnostic::error("scene::wrong-kind", message).at(name.span, "must be an entry of `cameras`"));
             return false;
         };
-        let mut lacks = |what: &str, missing: bool| {
-            if missing {
-                let message = format!("the camera `{name}` has no {what}, so none can change");
-                self.problems
-                    .add(Diagnostic::error("scene::wrong-kind", message).at(name.span, format!("needs an {what} from the beginning")));
-            }
-            missing
-        };
-        let no_exposure = lacks("exposure `ev100`", exposure && !matches!(camera.exposure, Exposure::Ev100(_)));
-        let no_fov = lacks("angle `fov`, being orthographic", fov && matches!(camera.projection, Projection::Orthographic { .. }));
-        !no_exposure && !no_fov
+        let lacks = [
+            ("exposure `ev100`", ev100 && !matches!(camera.exposure, Exposure::Ev100(_))),
+            ("exposure by a factor", factor && !matches!(camera.exposure, Exposure::Factor(_))),
+            ("angle `fov`, being orthographic", fov && matches!(camera.projection, Projection::Orthographic { .. })),
+        ];
+        for (what, _) in lacks.iter().filter(|(_, missing)| *missing) {
+            let message = format!("the camera `{name}` has no {what}, so none can change");
+            self.problems.add(Diagnostic::error("scene::wrong-kind", message).at(name.span, format!("needs an {what} from the beginning")));
+        }
+        !lacks.iter().any(|(_, missing)| *missing)
     }
 
     fn scalar(&mut self, field: &str, of: &str, value: &Number, range: std::ops::RangeInclusive<f32>) -> Vec4 {
@@ -252,12 +266,12 @@ impl One<'_, '_> {
         self.problems.add(Diagnostic::error("scene::no-change", message).at(name.span, "here").hint(format!("give it {fields}")));
     }
 
-    fn changes(
+    fn changes<const N: usize>(
         &mut self,
         node: Option<NodeRef>,
         name: &Text,
         fields: &str,
-        values: [Option<(fn(NodeRef) -> Property, Vec4)>; 2],
+        values: [Option<(fn(NodeRef) -> Property, Vec4)>; N],
         timing: (f64, Ease),
     ) {
         if values.iter().all(Option::is_none) {

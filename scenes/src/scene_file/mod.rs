@@ -21,11 +21,12 @@ mod spawn;
 #[cfg(test)]
 mod tests;
 
-pub(crate) use check::{Declaration, Kind, glow};
+pub(crate) use assets::UsedFile;
+pub(crate) use check::{Declaration, Kind, Play, glow};
 pub(crate) use checks::rotation_of;
 pub use document::{
-    ActionDoc, CameraDoc, EaseDoc, EnvironmentDoc, EventDoc, FileDoc, GroupDoc, LightDoc, MarkerDoc, MaterialDoc, Number, ObjectDoc,
-    RepeatDoc, SceneDoc, Seconds, ShapeDoc, Vector,
+    ActionDoc, AgainDoc, AnimationDoc, CameraDoc, ControllerDoc, EaseDoc, EnvironmentDoc, EventDoc, FileDoc, GroupDoc, KeyDoc, LightDoc,
+    MarkerDoc, MaterialDoc, Number, ObjectDoc, PathDoc, RepeatDoc, SceneDoc, Seconds, ShapeDoc, Vector,
 };
 pub use load::{LoadedScene, load_scene, load_scene_text};
-pub(crate) use spawn::{Spawned, spawn};
+pub(crate) use spawn::{Spawned, play_clip, spawn};

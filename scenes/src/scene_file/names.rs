@@ -4,12 +4,12 @@
 
 use std::collections::BTreeMap;
 use std::ops::Range;
-use std::sync::Arc;
 
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 use luminaire_graph::source::Span;
 use luminaire_graph::syntax::document::Text;
 
+use super::assets::UsedFile;
 use super::check::{Declaration, Kind};
 use super::checks::Problems;
 use super::document::{ActionDoc, EventDoc};
@@ -23,7 +23,7 @@ pub(super) const MAX_DEPTH: u32 = 256;
 pub(super) struct Names<'a> {
     declarations: &'a [Declaration],
     /// Per use of a file; `None` where it could not be loaded.
-    files: &'a [Option<Arc<StoredAsset>>],
+    files: &'a [Option<UsedFile>],
     by_name: BTreeMap<&'a str, usize>,
     /// Per declaration, the parent that it has now.
     parents: Vec<Option<NodeRef>>,
@@ -38,7 +38,7 @@ pub(super) struct Names<'a> {
 
 impl<'a> Names<'a> {
     /// Nothing is known yet but what the timeline will spawn.
-    pub(super) fn new(declarations: &'a [Declaration], files: &'a [Option<Arc<StoredAsset>>], timeline: &'a [EventDoc]) -> Names<'a> {
+    pub(super) fn new(declarations: &'a [Declaration], files: &'a [Option<UsedFile>], timeline: &'a [EventDoc]) -> Names<'a> {
         let mut future = BTreeMap::new();
         for event in timeline {
             if let ActionDoc::Spawn { groups, lights, objects, files } = &event.action {
@@ -103,7 +103,7 @@ impl<'a> Names<'a> {
             let Some(index) = self.by_name.get(file) else { continue };
             if let Some(Kind::File(used)) = self.declarations.get(*index).map(|declaration| &declaration.kind) {
                 // A file that was not loaded has been reported.
-                let asset = self.files.get(*used)?.as_ref()?;
+                let asset = &self.files.get(*used)?.as_ref()?.asset;
                 return inside(asset, name, inner, problems).map(|inner| NodeRef { declaration: *index, inside: Some(inner) });
             }
         }
@@ -131,9 +131,9 @@ impl<'a> Names<'a> {
     }
 
     /// The file that a node is, or lies inside of.
-    pub(super) fn file(&self, node: NodeRef) -> Option<&'a Arc<StoredAsset>> {
+    pub(super) fn file(&self, node: NodeRef) -> Option<&'a StoredAsset> {
         match self.declarations.get(node.declaration)?.kind {
-            Kind::File(used) => self.files.get(used)?.as_ref(),
+            Kind::File(used) => Some(&*self.files.get(used)?.as_ref()?.asset),
             _ => None,
         }
     }
@@ -179,11 +179,13 @@ impl<'a> Names<'a> {
         for start in range {
             let mut trail = Vec::new();
             let mut next = Some(start);
-            let mut depth = 0;
+            let (mut depth, mut step) = (0, 1);
             while let Some(index) = next {
                 match depths.get(&index) {
                     Some(0) => {
                         self.report_cycle(&trail, index, problems);
+                        // Where parents go round, depth says nothing.
+                        step = 0;
                         break;
                     }
                     Some(known) => {
@@ -197,8 +199,8 @@ impl<'a> Names<'a> {
                 next = self.parents.get(index).copied().flatten().map(|parent| parent.declaration);
             }
             for index in trail.into_iter().rev() {
-                depth += 1;
-                depths.insert(index, depth);
+                depth += step;
+                depths.insert(index, depth.max(1));
                 if let Some(declaration) = self.declarations.get(index).filter(|_| depth > MAX_DEPTH && !said) {
                     said = true;
                     problems.add(too_deep(&declaration.name.value, declaration.name.span));
@@ -253,7 +255,7 @@ fn inside(asset: &StoredAsset, name: &Text, inner: &str, problems: &mut Problems
 }
 
 fn too_deep(name: &str, span: Span) -> Diagnostic {
-    Diagnostic::error("scene::too-deep", format!("`{name}` has more than {MAX_DEPTH} nodes above it"))
+    Diagnostic::error("scene::too-deep", format!("`{name}` stands more than {MAX_DEPTH} levels deep"))
         .at(span, "too deep")
         .hint("give it a parent nearer to the root")
 }

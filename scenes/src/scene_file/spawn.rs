@@ -1,14 +1,14 @@
 //! From checked parts to entities.
 
 use std::ops::Range;
-use std::sync::Arc;
 
 use bevy_ecs::prelude::{Entity, World};
 use glam::{Affine3A, UVec3};
 
-use super::check::{Declaration, Kind, Repeat};
+use super::assets::UsedFile;
+use super::check::{Controller, Declaration, Kind, Play, Repeat};
 use crate::timeline::NodeRef;
-use crate::world::{ChildOf, MeshInstance, Name, StoredAsset, Transform, assign_slots, spawn_stored};
+use crate::world::{AnimationPlayer, ChildOf, MeshInstance, Name, Transform, assign_slots, spawn_stored};
 
 /// The entities of a declaration.
 #[derive(Debug)]
@@ -24,7 +24,7 @@ pub(crate) fn spawn(
     declarations: &[Declaration],
     range: Range<usize>,
     parents: &[Option<NodeRef>],
-    files: &[Arc<StoredAsset>],
+    files: &[UsedFile],
     spawned: &mut [Option<Spawned>],
 ) {
     for index in range.clone() {
@@ -47,14 +47,26 @@ pub(crate) fn spawn(
     assign_slots(world);
 }
 
-fn one(world: &mut World, declaration: &Declaration, files: &[Arc<StoredAsset>]) -> Spawned {
+fn one(world: &mut World, declaration: &Declaration, files: &[UsedFile]) -> Spawned {
     let mut entity = world.spawn((Name::new(declaration.name.value.clone()), Transform(declaration.local)));
     let root = entity.id();
     let mut inside = Vec::new();
     match &declaration.kind {
         Kind::Group => {}
-        Kind::Camera(camera) => {
+        Kind::Camera { camera, path, controller } => {
             entity.insert(camera.clone());
+            if let Some(path) = path {
+                entity.insert(path.clone());
+            }
+            match controller {
+                Some(Controller::Fly(fly)) => {
+                    entity.insert(*fly);
+                }
+                Some(Controller::Orbit(orbit)) => {
+                    entity.insert(*orbit);
+                }
+                None => {}
+            }
         }
         Kind::Directional(light) => {
             entity.insert(*light);
@@ -70,8 +82,11 @@ fn one(world: &mut World, declaration: &Declaration, files: &[Arc<StoredAsset>])
         }
         Kind::Object { mesh, material, repeat: Some(repeat) } => copies(world, root, *mesh, *material, repeat),
         Kind::File(used) => {
-            if let Some(asset) = files.get(*used) {
+            if let Some(UsedFile { asset, play }) = files.get(*used) {
                 inside = spawn_stored(world, asset, Some(root));
+                if let Some(play) = play {
+                    play_clip(world, root, play);
+                }
             }
         }
         Kind::ProbeVolume(volume) => {
@@ -85,6 +100,14 @@ fn one(world: &mut World, declaration: &Declaration, files: &[Arc<StoredAsset>])
         }
     }
     Spawned { root, inside }
+}
+
+/// Plays a clip of the file that was spawned below the entity, and no other.
+pub(crate) fn play_clip(world: &mut World, root: Entity, play: &Play) {
+    if let Some(mut player) = world.get_mut::<AnimationPlayer>(root) {
+        player.playing = vec![play.clip];
+        (player.speed, player.start, player.repeat) = (play.speed, play.start, play.repeat);
+    }
 }
 
 /// Copies on a grid around the parent, x running fastest. They have no names.

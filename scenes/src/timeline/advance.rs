@@ -8,7 +8,7 @@ use super::events::{Action, Event, NodeRef, Property, Timeline};
 use super::hierarchy;
 use super::property::{read, write};
 use super::segment::{Goal, Segment};
-use crate::scene_file::spawn;
+use crate::scene_file::{play_clip, spawn};
 
 /// Brings the world to a time: stops at every event on the way, where `settle` brings all that moves by itself to that time
 /// first, and leaves running changes at `now`. A scene without a timeline stays as it is.
@@ -64,6 +64,10 @@ impl Timeline {
                 let mut running = std::mem::take(&mut self.running);
                 running.retain(|property, _| node_of(*property).is_none_or(|node| self.living(world, node).is_ok()));
                 self.running = running;
+            }
+            Action::Animate { node, play } => {
+                let entity = self.living(world, *node)?;
+                play_clip(world, entity, play);
             }
             Action::Reparent { node, parent, keep_place } => {
                 let entity = self.living(world, *node)?;

@@ -2,13 +2,11 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ops::Range;
-use std::sync::Arc;
 
 use bevy_ecs::prelude::{Entity, Resource};
 
 use super::segment::{Ease, Goal, Segment};
-use crate::scene_file::{Declaration, Kind, Spawned};
-use crate::world::StoredAsset;
+use crate::scene_file::{Declaration, Kind, Play, Spawned, UsedFile};
 
 /// A node of a scene: something declared, or a node inside of a declared glTF file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -57,6 +55,7 @@ pub(crate) enum Action {
     Change { property: Property, goal: Goal, during: f64, ease: Ease },
     Spawn(Range<usize>),
     Remove(NodeRef),
+    Animate { node: NodeRef, play: Play },
     Reparent { node: NodeRef, parent: Option<NodeRef>, keep_place: bool },
 }
 
@@ -77,7 +76,7 @@ pub(crate) struct Timeline {
     /// Per declaration.
     pub(crate) parents: Vec<Option<NodeRef>>,
     /// Per use of a file.
-    pub(crate) files: Vec<Arc<StoredAsset>>,
+    pub(crate) files: Vec<UsedFile>,
     /// Per declaration, once it has been spawned.
     pub(crate) spawned: Vec<Option<Spawned>>,
     /// How many events have happened.
@@ -95,7 +94,7 @@ impl Timeline {
         events: Vec<Event>,
         declarations: Vec<Declaration>,
         parents: Vec<Option<NodeRef>>,
-        files: Vec<Arc<StoredAsset>>,
+        files: Vec<UsedFile>,
         spawned: Vec<Option<Spawned>>,
     ) -> Timeline {
         Timeline {
@@ -124,7 +123,7 @@ impl Timeline {
     pub(crate) fn name(&self, node: NodeRef) -> String {
         let Some(declaration) = self.declarations.get(node.declaration) else { return String::new() };
         let Kind::File(used) = declaration.kind else { return declaration.name.value.clone() };
-        let inner = node.inside.and_then(|inner| self.files.get(used)?.nodes().get(inner));
+        let inner = node.inside.and_then(|inner| self.files.get(used)?.asset.nodes().get(inner));
         inner.map_or_else(|| declaration.name.value.clone(), |inner| format!("{}/{}", declaration.name.value, inner.name))
     }
 }

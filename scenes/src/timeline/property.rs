@@ -6,7 +6,9 @@ use glam::{Mat3A, Quat, Vec3, Vec4};
 use super::events::{Field, Property, Timeline};
 use crate::asset::Projection;
 use crate::scene_file::glow;
-use crate::world::{Camera, DirectionalLight, Environment, Exposure, LocalLight, Materials, MeshInstance, RectangleLight, Transform, rigid_axes};
+use crate::world::{
+    Camera, DirectionalLight, Environment, Exposure, LocalLight, Materials, MeshInstance, RectangleLight, Transform, rigid_axes,
+};
 
 /// The present value; `None` where the node is gone, or is nothing that has such a value.
 pub(super) fn read(world: &World, timeline: &Timeline, property: Property) -> Option<Vec4> {
@@ -18,8 +20,8 @@ pub(super) fn read(world: &World, timeline: &Timeline, property: Property) -> Op
         Property::Intensity(node) => Some(scalar(read_light(world, timeline.entity(node)?)?.0)),
         Property::Color(node) => Some(read_light(world, timeline.entity(node)?)?.1.extend(0.0)),
         Property::Exposure(node) => match world.get::<Camera>(timeline.entity(node)?)?.exposure {
-            Exposure::Ev100(ev100) => Some(scalar(ev100)),
-            Exposure::Unchanged | Exposure::Factor(_) => None,
+            Exposure::Ev100(value) | Exposure::Factor(value) => Some(scalar(value)),
+            Exposure::Unchanged => None,
         },
         Property::FieldOfView(node) => match world.get::<Camera>(timeline.entity(node)?)?.projection {
             Projection::Perspective { yfov, .. } => Some(scalar(yfov)),
@@ -74,7 +76,10 @@ pub(super) fn write(world: &mut World, entity: Option<Entity>, property: Propert
         (Property::Color(_), Some(entity)) => write_light(world, entity, None, Some(value.truncate())),
         (Property::Exposure(_), Some(entity)) => {
             if let Some(mut camera) = world.get_mut::<Camera>(entity) {
-                camera.exposure = Exposure::Ev100(value.x);
+                camera.exposure = match camera.exposure {
+                    Exposure::Factor(_) => Exposure::Factor(value.x),
+                    Exposure::Ev100(_) | Exposure::Unchanged => Exposure::Ev100(value.x),
+                };
             }
         }
         (Property::FieldOfView(_), Some(entity)) => {

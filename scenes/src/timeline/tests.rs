@@ -245,7 +245,7 @@ fn a_wrong_timeline_is_refused_with_both_places() {
         ("(at: 1, do: Light(light: \"a\", intensity: 1))", "scene::wrong-kind", "`a` is no light"),
         ("(at: 1, do: Light(light: \"lamp\"))", "scene::no-change", "`intensity` or `color`"),
         ("(at: 1, do: Light(light: \"lamp\", intensity: -1))", "scene::bad-number", "`intensity`"),
-        ("(at: 1, do: Camera(camera: \"bare\", ev100: 1))", "scene::wrong-kind", "needs an exposure"),
+        ("(at: 1, do: Camera(camera: \"bare\", ev100: 1))", "scene::wrong-kind", "needs an exposure `ev100`"),
         ("(at: 1, do: Camera(camera: \"flat\", fov: 50))", "scene::wrong-kind", "being orthographic"),
         ("(at: 1, do: Camera(camera: \"lamp\", fov: 50))", "scene::wrong-kind", "no camera"),
         ("(at: 1, do: Material(material: \"n\", roughness: 1))", "scene::unknown-material", "did you mean `m`?"),

@@ -33,6 +33,11 @@ impl StoredAsset {
         &self.nodes
     }
 
+    /// Its animations, in the order of the file.
+    pub(crate) fn animations(&self) -> &[Animation] {
+        &self.animations
+    }
+
     /// Rows of its materials in the world.
     pub(crate) fn materials(&self) -> Range<usize> {
         self.materials.clone()

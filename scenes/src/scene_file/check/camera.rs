@@ -2,10 +2,11 @@
 
 use glam::Affine3A;
 use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::syntax::document::Text;
 
-use super::facing;
+use super::{Kind, facing, motion};
 use crate::asset::Projection;
-use crate::scene_file::checks::{FAR, Problems, SMALL};
+use crate::scene_file::checks::{BRIGHT, FAR, Problems, SMALL};
 use crate::scene_file::document::CameraDoc;
 use crate::world::{Camera, Exposure};
 
@@ -13,7 +14,7 @@ use crate::world::{Camera, Exposure};
 const ORTHO_FAR: f32 = 1000.0;
 
 /// A camera and its place.
-pub(super) fn camera(name: &str, entry: &CameraDoc, problems: &mut Problems) -> (Camera, Affine3A) {
+pub(super) fn camera(name: &Text, entry: &CameraDoc, problems: &mut Problems) -> (Kind, Affine3A) {
     let of = format!("camera `{name}`");
     let position = problems.position(&format!("`position` of {of}"), &entry.position);
     let target = problems.position(&format!("`target` of {of}"), &entry.target);
@@ -22,11 +23,36 @@ pub(super) fn camera(name: &str, entry: &CameraDoc, problems: &mut Problems) -> 
         problems.add(Diagnostic::error("scene::no-direction", message).at(entry.target.span, "must differ from `position`"));
     }
     let projection = projection(&of, entry, problems);
-    let exposure = entry
-        .ev100
-        .as_ref()
-        .map_or(Exposure::Unchanged, |value| Exposure::Ev100(problems.number(&format!("`ev100` of {of}"), Some(value), 0.0, -40.0..=40.0)));
-    (Camera { name: name.to_owned(), projection, exposure }, facing(position, target - position))
+    let exposure = exposure(&of, entry, problems);
+    let camera = Camera { name: name.value.clone(), projection, exposure };
+    let local = facing(position, target - position);
+    let path = entry.path.as_ref().and_then(|path| motion::path(&of, name.span, path, problems));
+    let controller = entry.controller.as_ref().map(|entry| motion::controller(&of, entry, local, target.as_dvec3(), problems));
+    if entry.path.is_some() && controller.is_some() {
+        problems.add(
+            Diagnostic::error("scene::which-motion", format!("{of} has both a `path` and a `controller`"))
+                .at(name.span, "this camera")
+                .hint("a camera either travels by itself or obeys; give one of them"),
+        );
+    }
+    (Kind::Camera { camera, path, controller }, local)
+}
+
+fn exposure(of: &str, entry: &CameraDoc, problems: &mut Problems) -> Exposure {
+    match (&entry.ev100, &entry.exposure) {
+        (None, None) => Exposure::Unchanged,
+        (Some(ev100), None) => Exposure::Ev100(problems.number(&format!("`ev100` of {of}"), Some(ev100), 0.0, -40.0..=40.0)),
+        (None, Some(factor)) => Exposure::Factor(problems.number(&format!("`exposure` of {of}"), Some(factor), 1.0, 0.0..=BRIGHT)),
+        (Some(ev100), Some(factor)) => {
+            problems.add(
+                Diagnostic::error("scene::which-exposure", format!("{of} has both an `ev100` and an `exposure`"))
+                    .at(factor.span, "a factor")
+                    .and(ev100.span, "an exposure value")
+                    .hint("`ev100` exposes as a real camera does, `exposure` by a factor; give one of them"),
+            );
+            Exposure::Unchanged
+        }
+    }
 }
 
 fn projection(of: &str, entry: &CameraDoc, problems: &mut Problems) -> Projection {

@@ -5,9 +5,11 @@ mod camera;
 mod light;
 pub(super) mod marker;
 pub(super) mod material;
+pub(super) mod motion;
 mod object;
 
 pub(crate) use light::glow;
+pub(crate) use motion::{Controller, Play};
 pub(crate) use object::Repeat;
 
 use std::ops::Range;
@@ -17,10 +19,10 @@ use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::syntax::document::{Entries, Text};
 use luminaire_graph::syntax::spanned::Spanned;
 
-use super::checks::{BRIGHT, FAR, Problems, SMALL};
-use super::document::{ActionDoc, FileDoc, GroupDoc, LightDoc, MaterialDoc, ObjectDoc, SceneDoc};
+use super::checks::{BRIGHT, FAR, LATE, Problems, SMALL};
+use super::document::{ActionDoc, AnimationDoc, FileDoc, GroupDoc, LightDoc, MaterialDoc, ObjectDoc, SceneDoc};
 use crate::asset::Material;
-use crate::world::{Camera, DirectionalLight, LocalLight, ProbeVolume, RectangleLight, ReflectionProbe, Volume, look_at};
+use crate::world::{Camera, CameraPath, DirectionalLight, LocalLight, ProbeVolume, RectangleLight, ReflectionProbe, Volume, look_at};
 
 /// Most events of a timeline.
 const MAX_EVENTS: usize = 100_000;
@@ -54,7 +56,11 @@ pub(crate) struct Declaration {
 #[derive(Debug)]
 pub(crate) enum Kind {
     Group,
-    Camera(Camera),
+    Camera {
+        camera: Camera,
+        path: Option<CameraPath>,
+        controller: Option<Controller>,
+    },
     Directional(DirectionalLight),
     Local(LocalLight),
     Rectangle {
@@ -79,7 +85,7 @@ impl Kind {
     pub(crate) fn what(&self) -> &'static str {
         match self {
             Kind::Group => "group",
-            Kind::Camera(_) => "camera",
+            Kind::Camera { .. } => "camera",
             Kind::Directional(_) | Kind::Local(_) | Kind::Rectangle { .. } => "light",
             Kind::Object { .. } => "object",
             Kind::File(_) => "file",
@@ -95,6 +101,9 @@ pub(super) struct FileUse {
     pub(super) name: String,
     pub(super) path: Text,
     pub(super) materials: Entries<MaterialDoc>,
+    pub(super) animation: Option<AnimationDoc>,
+    /// When it appears, seconds.
+    pub(super) appears: f64,
 }
 
 /// Checks everything but names of nodes and what the timeline changes; what is wrong goes to `problems`.
@@ -109,8 +118,8 @@ pub(super) fn check(document: &SceneDoc, problems: &mut Problems) -> Checked {
     }
     checked.groups(&document.groups, problems);
     for (name, entry) in &document.cameras {
-        let (camera, local) = camera::camera(&name.value, entry, problems);
-        checked.declare(name, Kind::Camera(camera), entry.parent.clone(), local);
+        let (kind, local) = camera::camera(name, entry, problems);
+        checked.declare(name, kind, entry.parent.clone(), local);
     }
     checked.lights(&document.lights, problems);
     for (name, entry) in &document.markers {
@@ -118,7 +127,7 @@ pub(super) fn check(document: &SceneDoc, problems: &mut Problems) -> Checked {
         checked.declare(name, kind, parent, local);
     }
     checked.objects(document, &document.objects, problems);
-    checked.files(&document.files, problems);
+    checked.files(&document.files, 0.0, problems);
     checked.initial = 0..checked.declarations.len();
     if let Some(event) = document.timeline.get(MAX_EVENTS) {
         problems.add(
@@ -132,7 +141,9 @@ pub(super) fn check(document: &SceneDoc, problems: &mut Problems) -> Checked {
             checked.groups(groups, problems);
             checked.lights(lights, problems);
             checked.objects(document, objects, problems);
-            checked.files(files, problems);
+            // What is wrong with the time is said where events are put in order.
+            let appears = if (0.0..=LATE).contains(&event.at.value) { event.at.value } else { 0.0 };
+            checked.files(files, appears, problems);
         }
         checked.spawned.push(first..checked.declarations.len());
     }
@@ -172,12 +183,18 @@ impl Checked {
         }
     }
 
-    fn files(&mut self, files: &Entries<FileDoc>, problems: &mut Problems) {
+    fn files(&mut self, files: &Entries<FileDoc>, appears: f64, problems: &mut Problems) {
         for (name, entry) in files {
             let of = format!("file `{}`", name.value);
             let local = problems.placement(&of, entry.translation.as_ref(), entry.rotation.as_ref(), entry.scale.as_ref());
             let kind = Kind::File(self.files.len());
-            self.files.push(FileUse { name: name.value.clone(), path: entry.path.clone(), materials: entry.materials.clone() });
+            self.files.push(FileUse {
+                name: name.value.clone(),
+                path: entry.path.clone(),
+                materials: entry.materials.clone(),
+                animation: entry.animation.clone(),
+                appears,
+            });
             self.declare(name, kind, entry.parent.clone(), local);
         }
     }

@@ -2,9 +2,11 @@
 //!
 //! Angles are in degrees, lengths in metres, colors linear Rec.709. Names are not resolved and numbers not checked here.
 
+mod motion;
 mod nodes;
 mod timeline;
 
+pub use motion::*;
 pub use nodes::*;
 pub use timeline::*;
 

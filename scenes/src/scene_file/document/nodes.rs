@@ -6,7 +6,7 @@ use luminaire_graph::syntax::document::{Entries, Text};
 use luminaire_graph::syntax::spanned::Spanned;
 use serde::Deserialize;
 
-use super::{MaterialDoc, Number, Vector};
+use super::{AnimationDoc, ControllerDoc, MaterialDoc, Number, PathDoc, Vector};
 
 /// A camera; +Y is up.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
@@ -31,6 +31,15 @@ pub struct CameraDoc {
     /// Exposure value at ISO 100; without it radiance is shown as it is.
     #[serde(default)]
     pub ev100: Option<Number>,
+    /// Factor on radiance, instead of `ev100`.
+    #[serde(default)]
+    pub exposure: Option<Number>,
+    /// Travels by itself.
+    #[serde(default)]
+    pub path: Option<PathDoc>,
+    /// Obeys commands.
+    #[serde(default)]
+    pub controller: Option<ControllerDoc>,
     /// The node whose space it stands in; the world unless said otherwise.
     #[serde(default)]
     pub parent: Option<Text>,
@@ -268,6 +277,9 @@ pub struct FileDoc {
     /// Changes of materials that the file brings, by their names in the file. What is not named stays.
     #[serde(default)]
     pub materials: Entries<MaterialDoc>,
+    /// How its animations play; the first one in a loop unless said otherwise.
+    #[serde(default)]
+    pub animation: Option<AnimationDoc>,
 }
 
 /// A place that techniques use. It shows nothing.

@@ -4,7 +4,7 @@ use luminaire_graph::syntax::document::{Entries, Text};
 use luminaire_graph::syntax::spanned::Spanned;
 use serde::Deserialize;
 
-use super::{FileDoc, GroupDoc, LightDoc, Number, ObjectDoc, Vector};
+use super::{AgainDoc, FileDoc, GroupDoc, LightDoc, Number, ObjectDoc, Vector};
 
 /// Seconds with their place.
 pub type Seconds = Spanned<f64>;
@@ -100,6 +100,9 @@ pub enum ActionDoc {
         /// Exposure value at ISO 100, for a camera that has one.
         #[serde(default)]
         ev100: Option<Number>,
+        /// Factor on radiance, for a camera that has one.
+        #[serde(default)]
+        exposure: Option<Number>,
         /// Vertical field of view, degrees, for a perspective camera.
         #[serde(default)]
         fov: Option<Number>,
@@ -109,6 +112,20 @@ pub enum ActionDoc {
         /// How it begins and ends.
         #[serde(default)]
         ease: EaseDoc,
+    },
+    /// A file plays an animation, from its beginning.
+    Animate {
+        /// Which.
+        file: Text,
+        /// By its name in the file, or its number from 0; the first unless said otherwise.
+        #[serde(default)]
+        clip: Option<Text>,
+        /// Seconds of the clip in a second; 1 unless said otherwise.
+        #[serde(default)]
+        speed: Option<Number>,
+        /// What comes after its end.
+        #[serde(default)]
+        again: AgainDoc,
     },
     /// The sky changes.
     Sky {

@@ -14,7 +14,9 @@ mod reference;
 use super::SceneDoc;
 use super::{load_scene, load_scene_text};
 use crate::publish::counts;
-use crate::world::{Camera, DirectionalLight, Exposure, GlobalTransform, Name, find_by_name, propagate_transforms, select_camera, set_time};
+use crate::world::{
+    Camera, DirectionalLight, Exposure, GlobalTransform, Name, find_by_name, propagate_transforms, select_camera, set_time,
+};
 
 fn problems(text: &str) -> (Vec<Diagnostic>, String) {
     let mut sources = SourceMap::default();

@@ -5,7 +5,7 @@ use glam::{UVec3, Vec2};
 use super::reference::load_beside_chair;
 use super::*;
 use crate::asset::Projection;
-use crate::world::{Materials, MeshInstance, Meshes, ProbeVolume, RectangleLight, ReflectionProbe, Volume};
+use crate::world::{Fly, Materials, MeshInstance, Meshes, Orbit, ProbeVolume, RectangleLight, ReflectionProbe, Volume};
 
 fn load(text: &str) -> crate::World {
     let mut sources = SourceMap::default();
@@ -150,8 +150,8 @@ fn files_have_materials_of_their_own_and_nodes_that_can_be_parents() {
         },
         groups: { "cat": (translation: (0, 0.5, 0), parent: "chair/seat") },
         timeline: [
-            (at: 1, do: Move(node: "dark/seat", to: (0, 3, 0))),
-            (at: 2, do: Reparent(node: "chair/seat")),
+            (at: 1, do: Move(node: "dark/legs", to: (0, 3, 0))),
+            (at: 2, do: Reparent(node: "chair/legs")),
             (at: 3, do: Remove(node: "chair")),
             (at: 3, do: Material(material: "dark/Wood", roughness: 1)),
             (at: 4, do: Spawn(files: { "chair": (path: "chair.gltf", translation: (0, 0, 7)) })),
@@ -168,7 +168,7 @@ fn files_have_materials_of_their_own_and_nodes_that_can_be_parents() {
     assert_eq!(looks(&world), [(0.5, 0.75, 0.0), (0.5, 0.25, 2.0)]);
     set_time(&mut world, 3.5).unwrap();
     propagate_transforms(&mut world);
-    assert_eq!(place(&mut world, "cat"), Vec3::new(5.0, 1.5, 0.0), "it left the chair with the seat");
+    assert_eq!(place(&mut world, "cat"), Vec3::new(5.0, 2.5, 0.0), "it left the chair with legs and seat");
     assert!(find_by_name(&mut world, "chair").is_err());
     assert_eq!(looks(&world)[1], (0.5, 1.0, 2.0));
     set_time(&mut world, 4.0).unwrap();
@@ -200,5 +200,83 @@ fn files_have_materials_of_their_own_and_nodes_that_can_be_parents() {
         let rendered = render(&problems, &sources, false);
         assert_eq!(problems.iter().map(|problem| problem.code).collect::<Vec<_>>(), expected, "{rendered}");
         assert!(!rendered.contains("Wod") || rendered.contains("did you mean `Wood`?"), "{rendered}");
+    }
+}
+
+#[test]
+fn clips_play_as_written() {
+    let text = r#"(
+        files: {
+            "first": (path: "chair.gltf"),
+            "slow": (path: "chair.gltf", animation: (clip: "Rise", speed: 0.5, start: 1, again: Once)),
+        },
+        groups: { "a": (parent: "first/seat"), "b": (parent: "slow/seat") },
+        timeline: [
+            (at: 4.5, do: Animate(file: "first", clip: "0", speed: 2, again: PingPong)),
+            (at: 6, do: Spawn(files: { "late": (path: "chair.gltf") }, groups: { "c": (parent: "late/seat") })),
+        ],
+    )"#;
+    let (loaded, sources) = load_beside_chair(text);
+    let mut world = loaded.unwrap_or_else(|problems| panic!("{}", render(&problems, &sources, false))).world;
+    let expected = [("a", 0.5, 1.5), ("a", 2.5, 1.5), ("b", 2.5, 1.75), ("b", 5.5, 3.0), ("a", 5.75, 2.5), ("c", 6.5, 1.5)];
+    for (name, seconds, height) in expected {
+        set_time(&mut world, seconds).unwrap();
+        propagate_transforms(&mut world);
+        assert!((place(&mut world, name).y - height).abs() < 1e-5, "{name} at {seconds} s: {}", place(&mut world, name));
+    }
+    let wrong = [
+        (
+            r#"(files: { "a": (path: "chair.gltf", animation: (clip: "Rize", speed: 1e9)) })"#,
+            vec!["scene::bad-number", "scene::unknown-clip"],
+        ),
+        (r#"(files: { "a": (path: "chair.gltf") }, timeline: [(at: 1, do: Animate(file: "a", clip: "7"))])"#, vec!["scene::unknown-clip"]),
+        (r#"(groups: { "a": () }, timeline: [(at: 1, do: Animate(file: "a"))])"#, vec!["scene::wrong-kind"]),
+    ];
+    for (text, expected) in wrong {
+        let (loaded, sources) = load_beside_chair(text);
+        let problems = loaded.unwrap_err();
+        let rendered = render(&problems, &sources, false);
+        assert_eq!(problems.iter().map(|problem| problem.code).collect::<Vec<_>>(), expected, "{rendered}");
+        assert!(!rendered.contains("Rize") || rendered.contains("did you mean `Rise`?"), "{rendered}");
+    }
+}
+
+#[test]
+fn cameras_travel_obey_and_are_exposed() {
+    let mut world = load(
+        r#"(cameras: {
+            "train": (position: (0, 0, 5), target: (0, 0, 0), path: (keys: [
+                (at: 0, position: (0, 0, 5), target: (0, 0, 0), fov: 40), (at: 2, position: (4, 0, 5), target: (4, 0, 0), fov: 60),
+            ], straight: true, again: Once)),
+            "bird": (position: (0, 0, 5), target: (0, 0, 0), exposure: 0.5, controller: Fly(speed: 6)),
+            "moon": (position: (0, 0, 5), target: (0, 0, 1), controller: Orbit(turn: 90, nearest: 1, farthest: 20)),
+        }, timeline: [(at: 1, do: Camera(camera: "bird", exposure: 2))])"#,
+    );
+    set_time(&mut world, 1.0).unwrap();
+    propagate_transforms(&mut world);
+    assert!((place(&mut world, "train") - Vec3::new(2.0, 0.0, 5.0)).length() < 1e-5);
+    let [train, bird, moon] = ["train", "bird", "moon"].map(|name| find_by_name(&mut world, name).unwrap());
+    let Projection::Perspective { yfov, .. } = world.get::<Camera>(train).unwrap().projection else { panic!("no perspective") };
+    assert!((yfov.to_degrees() - 50.0).abs() < 1e-3);
+    assert_eq!(world.get::<Camera>(bird).unwrap().exposure, Exposure::Factor(2.0));
+    assert_eq!(world.get::<Fly>(bird).unwrap().speed, 6.0);
+    let orbit = world.get::<Orbit>(moon).unwrap();
+    assert_eq!((orbit.distance(), orbit.nearest, orbit.farthest), (4.0, 1.0, 20.0));
+    let head = "position: (0, 0, 5), target: (0, 0, 0)";
+    let wrong = [
+        ("ev100: 3, exposure: 1", vec!["scene::which-exposure"]),
+        ("path: (keys: [])", vec!["scene::camera-path"]),
+        (
+            "path: (keys: [(at: 1, position: (0, 0, 1), target: (0, 0, 0)), (at: 1, position: (0, 0, 2), target: (0, 0, 0))])",
+            vec!["scene::camera-path"],
+        ),
+        (
+            "path: (keys: [(at: -1, position: (0, 0, 1), target: (0, 0, 0))]), controller: Fly()",
+            vec!["scene::bad-time", "scene::which-motion"],
+        ),
+        ("controller: Orbit(nearest: 5, farthest: 4)", vec!["scene::bad-number"]),
+    ];
+    for (fields, expected) in wrong {
+        assert_eq!(codes(&format!("(cameras: {{ \"c\": ({head}, {fields}) }})")), expected, "{fields}");
     }
 }

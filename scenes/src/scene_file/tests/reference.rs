@@ -4,15 +4,17 @@ use std::path::Path;
 
 use super::*;
 
-/// A chair with the node `seat` and the material `Wood`.
+/// A chair with the node `seat`, the material `Wood`, and the clip `Rise`, in which the seat goes from 1 m to 3 m within 2 s.
 pub(super) const CHAIR: &str = r#"{
     "asset": { "version": "2.0" }, "scene": 0, "scenes": [{ "nodes": [0] }],
     "nodes": [{ "name": "legs", "children": [1] }, { "name": "seat", "mesh": 0, "translation": [0, 1, 0] }],
     "meshes": [{ "primitives": [{ "attributes": { "POSITION": 0 }, "material": 0 }] }],
     "materials": [{ "name": "Wood", "pbrMetallicRoughness": { "baseColorFactor": [0.5, 0.25, 0.125, 1], "roughnessFactor": 0.75, "metallicFactor": 0 } }],
-    "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] }],
-    "bufferViews": [{ "buffer": 0, "byteLength": 36 }],
-    "buffers": [{ "byteLength": 36, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAA" }]
+    "accessors": [{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3", "min": [0, 0, 0], "max": [1, 1, 0] },
+        { "bufferView": 1, "componentType": 5126, "count": 2, "type": "SCALAR", "min": [0], "max": [2] }, { "bufferView": 2, "componentType": 5126, "count": 2, "type": "VEC3" }],
+    "bufferViews": [{ "buffer": 0, "byteLength": 36 }, { "buffer": 0, "byteOffset": 36, "byteLength": 8 }, { "buffer": 0, "byteOffset": 44, "byteLength": 24 }],
+    "animations": [{ "name": "Rise", "channels": [{ "sampler": 0, "target": { "node": 1, "path": "translation" } }], "samplers": [{ "input": 1, "output": 2 }] }],
+    "buffers": [{ "byteLength": 68, "uri": "data:application/octet-stream;base64,AAAAAAAAAAAAAAAAAACAPwAAAAAAAAAAAAAAAAAAgD8AAAAAAAAAAAAAAEAAAAAAAACAPwAAAAAAAAAAAABAQAAAAAA=" }]
 }"#;
 
 /// Loads a scene beside the chair.
@@ -48,7 +50,12 @@ fn examples_load() {
 #[test]
 fn everything_that_can_be_written_is_mentioned() {
     let page = page();
-    let sources = [include_str!("../document/mod.rs"), include_str!("../document/nodes.rs"), include_str!("../document/timeline.rs")];
+    let sources = [
+        include_str!("../document/mod.rs"),
+        include_str!("../document/motion.rs"),
+        include_str!("../document/nodes.rs"),
+        include_str!("../document/timeline.rs"),
+    ];
     let mut named = 0;
     for line in sources.iter().flat_map(|source| source.lines()) {
         let line = line.trim();
