@@ -111,6 +111,33 @@ fn wrong_paths() -> Result<(), Failed> {
     result
 }
 
+/// What a scene holds, now and later, for people and for programs.
+fn scenes() -> Result<(), Failed> {
+    let scene = "scenes/wall_removed.ron";
+    let said = |arguments: &[&str], expected: &[&str]| -> Result<String, Failed> {
+        let text = String::from_utf8(run(arguments)?.stdout)?;
+        match expected.iter().find(|expected| !text.contains(**expected)) {
+            Some(missing) => Err(format!("{arguments:?} does not say `{missing}`:\n{text}").into()),
+            None => Ok(text),
+        }
+    };
+    let text = said(&["scene", scene], &["outer wall", "point light, 60 cd", "EV100 3.5", "spawn group `blast`", "memory", "bounds"])?;
+    if text.contains("rubble 1   ") {
+        return Err("rubble lies there before the wall falls".into());
+    }
+    let later = said(&["scene", scene, "--time", "3"], &["rubble 1   ", "time       3 s"])?;
+    if later.contains("outer wall   ") {
+        return Err("the wall still stands".into());
+    }
+    let json: serde_json::Value = serde_json::from_str(&said(&["scene", scene, "--format", "json"], &[])?)?;
+    if json["timeline"][0]["at"] != 2.0 || json["nodes"].as_array().is_none_or(Vec::is_empty) {
+        return Err(format!("the JSON lacks something: {json}").into());
+    }
+    let folder = tempfile::tempdir()?;
+    refused(&["scene", "scenes/none.ron"], &["scene::unreadable", "scenes/cornell.ron"], folder.path())?;
+    refused(&["scene", scene, "--time", "nan"], &["world::bad-time"], folder.path())
+}
+
 /// Wrong usage is status 2, before anything is loaded.
 fn usage() -> Result<(), Failed> {
     let render = ["render", "pipelines/pbr.ron", "--scene", "scenes/cornell.ron", "-o", "/nonexistent/out.png"];
@@ -303,6 +330,7 @@ fn main() {
     let trials: Vec<Trial> = vec![
         trial("bad input is refused", adapter, bad_input),
         trial("wrong paths are explained", None, wrong_paths),
+        trial("scenes are described", None, scenes),
         trial("wrong usage is status 2", None, usage),
         trial("damaged files are read or refused", None, damaged_files),
         trial("a missing adapter is explained", None, no_adapter),

@@ -4,7 +4,9 @@ use bevy_ecs::prelude::{Entity, World};
 use glam::Affine3A;
 use luminaire_graph::diagnostic::Diagnostic;
 
-use crate::world::{ChildOf, Children, Transform};
+use super::property::rotation_and_scale;
+use crate::asset::Pose;
+use crate::world::{ChildOf, Children, RestPose, Transform};
 
 /// How many levels are despawned at once: the library goes down by recursion.
 const LEVELS: usize = 64;
@@ -42,6 +44,9 @@ pub(super) fn reparent(world: &mut World, name: &str, entity: Entity, parent: Op
         }
         if let Some(mut transform) = world.get_mut::<Transform>(entity) {
             transform.0 = local;
+        }
+        if let (Some((rotation, scale)), Some(mut rest)) = (rotation_and_scale(world, entity), world.get_mut::<RestPose>(entity)) {
+            rest.0 = Pose { translation: local.translation.into(), rotation, scale };
         }
     }
     let mut entity = world.entity_mut(entity);

@@ -1,13 +1,13 @@
 //! Reading and writing what a timeline changes. Every value travels as four floats.
 
 use bevy_ecs::prelude::{Entity, World};
-use glam::{Mat3A, Quat, Vec3, Vec4};
+use glam::{Affine3A, Mat3A, Quat, Vec3, Vec4};
 
 use super::events::{Field, Property, Timeline};
-use crate::asset::Projection;
+use crate::asset::{Pose, Projection};
 use crate::scene_file::glow;
 use crate::world::{
-    Camera, DirectionalLight, Environment, Exposure, LocalLight, Materials, MeshInstance, RectangleLight, Transform, rigid_axes,
+    Camera, DirectionalLight, Environment, Exposure, LocalLight, Materials, MeshInstance, RectangleLight, RestPose, Transform, rigid_axes,
 };
 
 /// The present value; `None` where the node is gone, or is nothing that has such a value.
@@ -63,14 +63,13 @@ pub(super) fn write(world: &mut World, entity: Option<Entity>, property: Propert
         }
         (_, None) => {}
         (Property::Translation(_), Some(entity)) => {
-            if let Some(mut transform) = world.get_mut::<Transform>(entity) {
-                transform.0.translation = value.truncate().into();
-            }
+            let place = |local: &mut Affine3A| local.translation = value.truncate().into();
+            put(world, entity, place, |rest| rest.translation = value.truncate());
         }
         (Property::Rotation(_) | Property::Scale(_), Some(entity)) => {
-            if let Some(mut transform) = world.get_mut::<Transform>(entity) {
-                transform.0.matrix3 = Mat3A::from_quat(Quat::from_vec4(value)) * Mat3A::from_diagonal(scale);
-            }
+            let rotation = Quat::from_vec4(value);
+            let place = |local: &mut Affine3A| local.matrix3 = Mat3A::from_quat(rotation) * Mat3A::from_diagonal(scale);
+            put(world, entity, place, |rest| (rest.rotation, rest.scale) = (rotation, scale));
         }
         (Property::Intensity(_), Some(entity)) => write_light(world, entity, Some(value.x), None),
         (Property::Color(_), Some(entity)) => write_light(world, entity, None, Some(value.truncate())),
@@ -92,9 +91,23 @@ pub(super) fn write(world: &mut World, entity: Option<Entity>, property: Propert
     }
 }
 
+/// Changes a node's transform, if that makes a difference, and where it rests while no animation moves it.
+fn put(world: &mut World, entity: Entity, place: impl Fn(&mut Affine3A), rest: impl Fn(&mut Pose)) {
+    if let Some(mut pose) = world.get_mut::<RestPose>(entity) {
+        rest(&mut pose.0);
+    }
+    if let Some(mut transform) = world.get_mut::<Transform>(entity) {
+        let mut local = transform.0;
+        place(&mut local);
+        if transform.0 != local {
+            transform.0 = local;
+        }
+    }
+}
+
 /// A node's turn, and its size along its own axes, negative along x where it is mirrored. What its axes are not at right
 /// angles for is lost.
-fn rotation_and_scale(world: &World, entity: Entity) -> Option<(Quat, Vec3)> {
+pub(super) fn rotation_and_scale(world: &World, entity: Entity) -> Option<(Quat, Vec3)> {
     let matrix = world.get::<Transform>(entity)?.0.matrix3;
     let (x, y, z) = rigid_axes(matrix);
     let axes = [x, y, z].map(|axis| axis.as_vec3());
