@@ -4,11 +4,11 @@ use bevy_ecs::prelude::{Entity, Without, World};
 use glam::Vec3;
 
 use super::Node;
-use super::text::{color, number, vector};
+use super::text::{color, number, seconds, vector};
 use crate::asset::Projection;
 use crate::world::{
-    Camera, ChildOf, Children, DirectionalLight, Exposure, GlobalTransform, LocalLight, Materials, MeshInstance, Meshes, Name, ProbeVolume,
-    RectangleLight, ReflectionProbe, Transform, Volume,
+    AnimationPlayer, Camera, CameraPath, ChildOf, Children, DirectionalLight, Exposure, Fly, GlobalTransform, LocalLight, Materials,
+    MeshInstance, Meshes, Name, Orbit, ProbeVolume, RectangleLight, ReflectionProbe, Repeat, Transform, Volume,
 };
 
 /// All nodes, each behind its parent; siblings in the order in which they came.
@@ -34,6 +34,18 @@ fn parts(world: &World, entity: Entity) -> Vec<String> {
     let mut parts = Vec::new();
     if let Some(camera) = world.get::<Camera>(entity) {
         parts.push(camera_text(camera));
+    }
+    if let Some(path) = world.get::<CameraPath>(entity) {
+        parts.push(format!("travels until {} s", seconds(path.end())));
+    }
+    if world.get::<Fly>(entity).is_some() {
+        parts.push("flies by command".to_owned());
+    }
+    if world.get::<Orbit>(entity).is_some() {
+        parts.push("orbits by command".to_owned());
+    }
+    if let Some(player) = world.get::<AnimationPlayer>(entity) {
+        parts.push(clips(player));
     }
     if let Some(light) = world.get::<DirectionalLight>(entity) {
         parts.push(format!("directional light, {} lx{}", number(light.illuminance), color(light.color)));
@@ -63,6 +75,26 @@ fn parts(world: &World, entity: Entity) -> Vec<String> {
         parts.push(format!("box volume, {} m", vector(volume.size)));
     }
     parts
+}
+
+/// All clips of a file, those that play first.
+fn clips(player: &AnimationPlayer) -> String {
+    let clip = |index: usize| {
+        let clip = player.clips().get(index)?;
+        Some(format!("`{}` of {} s", clip.name, number(clip.duration)))
+    };
+    let list = |indices: &mut dyn Iterator<Item = usize>| indices.filter_map(clip).collect::<Vec<_>>().join(", ");
+    let playing = list(&mut player.playing.iter().copied());
+    let others = list(&mut (0..player.clips().len()).filter(|index| !player.playing.contains(index)));
+    let speed = if player.speed == 1.0 { String::new() } else { format!(" at speed {}", seconds(player.speed)) };
+    let start = if player.start == 0.0 { String::new() } else { format!(" from {} s", seconds(player.start)) };
+    let again = match player.repeat {
+        Repeat::Once => " once",
+        Repeat::Loop => "",
+        Repeat::PingPong => " to and fro",
+    };
+    let others = if others.is_empty() { others } else { format!(", has {others}") };
+    if playing.is_empty() { format!("plays nothing{others}") } else { format!("plays {playing}{speed}{start}{again}{others}") }
 }
 
 fn camera_text(camera: &Camera) -> String {

@@ -224,6 +224,8 @@ fn clips_play_as_written() {
         propagate_transforms(&mut world);
         assert!((place(&mut world, name).y - height).abs() < 1e-5, "{name} at {seconds} s: {}", place(&mut world, name));
     }
+    let shown = crate::describe::text(&crate::describe::describe(&mut world));
+    assert!(shown.contains("plays `Rise` of 2 s at speed 0.5 from 1 s once"), "{shown}");
     let wrong = [
         (
             r#"(files: { "a": (path: "chair.gltf", animation: (clip: "Rize", speed: 1e9)) })"#,
@@ -278,5 +280,36 @@ fn cameras_travel_obey_and_are_exposed() {
     ];
     for (fields, expected) in wrong {
         assert_eq!(codes(&format!("(cameras: {{ \"c\": ({head}, {fields}) }})")), expected, "{fields}");
+    }
+}
+
+#[test]
+fn animated_nodes_that_change_parents_are_functions_of_time_too() {
+    let text = r#"(
+        files: { "chair": (path: "chair.gltf", rotation: (0, 0, 30)), "other": (path: "chair.gltf", animation: (speed: 0.3)) },
+        groups: { "cat": (parent: "chair/seat"), "wheel": () },
+        timeline: [
+            (at: 0.5, do: Turn(node: "wheel", by: (0, 900, 0), during: 5)),
+            (at: 1.3, do: Reparent(node: "cat", parent: "other/seat")),
+            (at: 2.1, do: Reparent(node: "chair/legs", parent: "wheel")),
+            (at: 2.4, do: Animate(file: "other", speed: -1)),
+            (at: 2.9, do: Move(node: "chair/legs", to: (0, 0, 9), during: 2)),
+            (at: 3.7, do: Reparent(node: "cat", parent: "wheel")),
+        ],
+    )"#;
+    let at = |steps: &[f64]| {
+        let mut world = load_beside_chair(text).0.unwrap().world;
+        for step in steps {
+            set_time(&mut world, *step).unwrap();
+        }
+        propagate_transforms(&mut world);
+        let bits = |place: &GlobalTransform| place.0.to_cols_array().map(f32::to_bits);
+        let mut places: Vec<_> = world.query::<&GlobalTransform>().iter(&world).map(bits).collect();
+        places.sort_unstable();
+        places
+    };
+    for end in [1.3, 2.0, 3.0, 3.7, 4.44, 7.0] {
+        let steps: Vec<f64> = (1..30).map(|step| f64::from(step) * 0.17).filter(|step| *step < end).chain([end]).collect();
+        assert_eq!(at(&steps), at(&[end]), "{end}");
     }
 }
