@@ -102,7 +102,7 @@ fn wrong_paths() -> Result<(), Failed> {
         (&["plan", "pipelines"], &["load::missing-file", "it is a folder"]),
         (&["plan", pbr, "--set", "exposure=nan", "--set", "foo=1"], &["expand::bad-set", "expand::unknown-param"]),
         (&["plan", pbr, "--size", "4294967295x1"], &["expand::size-over-limit"]),
-        (&["check", "scenes/none.ron"], &["scene::unreadable", cornell]),
+        (&["check", "scenes/nowhere_to_be_found.ron"], &["scene::unreadable", cornell]),
         (&["check", "none.ron", "none.wgsl", "none.glb", "none"], &["none.ron", "none.wgsl", "none.glb", "check::kind"]),
         (&["check", binary_path], &["not UTF-8 at byte 1"]),
     ];
@@ -134,7 +134,7 @@ fn scenes() -> Result<(), Failed> {
         return Err(format!("the JSON lacks something: {json}").into());
     }
     let folder = tempfile::tempdir()?;
-    refused(&["scene", "scenes/none.ron"], &["scene::unreadable", "scenes/cornell.ron"], folder.path())?;
+    refused(&["scene", "scenes/nowhere_to_be_found.ron"], &["scene::unreadable", "scenes/cornell.ron"], folder.path())?;
     refused(&["scene", scene, "--time", "nan"], &["world::bad-time"], folder.path())
 }
 

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use bevy_ecs::prelude::World;
-use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
+use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::syntax::document::Text;
 
 use super::check::{FileUse, Play, material, motion};
@@ -68,11 +68,12 @@ fn with_changes(world: &mut World, asset: &StoredAsset, used: &FileUse, problems
     let names: Vec<String> = all.unwrap_or_default().iter().map(|material| material.name.clone()).collect();
     for name in used.materials.keys().filter(|name| !names.contains(&name.value)) {
         let known = || names.iter().map(String::as_str);
-        problems.add(
+        problems.add_unknown(
             Diagnostic::error("scene::unknown-material", format!("the file `{}` has no material `{}`", used.name, name.value))
-                .at(name.span, "no such material")
-                .note(format!("materials of the file: {}", list_names(known())))
-                .maybe_hint(did_you_mean(&name.value, known())),
+                .at(name.span, "no such material"),
+            "materials of the file",
+            Some(&name.value),
+            known,
         );
     }
     // Several materials of one name change together; what is wrong with a value is said once.

@@ -3,7 +3,7 @@
 use std::ops::RangeInclusive;
 
 use glam::{Affine3A, EulerRot, Quat, Vec3};
-use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 use luminaire_graph::source::Span;
 use luminaire_graph::syntax::spanned::Spanned;
 
@@ -17,6 +17,8 @@ pub(super) const BRIGHT: f32 = 1e10;
 pub(super) const COLORFUL: f32 = 1e3;
 /// Latest moment and longest change, seconds: more than a week.
 pub(super) const LATE: f64 = 1e6;
+/// Problems that go through all names for a hint; what comes later is a consequence, or a text of a program.
+const HELPFUL: usize = 20;
 /// Smallest size, metres.
 pub(super) const SMALL: f32 = 1e-6;
 
@@ -27,6 +29,22 @@ pub(super) struct Problems(pub(super) Vec<Diagnostic>);
 impl Problems {
     pub(super) fn add(&mut self, diagnostic: Diagnostic) {
         self.0.push(diagnostic);
+    }
+
+    /// Adds that a name is unknown, with those that there are; beyond the first few it is the fact alone that counts.
+    pub(super) fn add_unknown<'a, Known: Iterator<Item = &'a str>>(
+        &mut self,
+        problem: Diagnostic,
+        what: &str,
+        wrong: Option<&str>,
+        known: impl Fn() -> Known,
+    ) {
+        self.0.push(if self.0.len() < HELPFUL {
+            let hint = wrong.and_then(|wrong| did_you_mean(wrong, known()));
+            problem.note(format!("{what}: {}", list_names(known()))).maybe_hint(hint)
+        } else {
+            problem
+        });
     }
 
     fn out_of_range(&mut self, what: &str, shown: &str, span: Span, range: &RangeInclusive<f32>) {

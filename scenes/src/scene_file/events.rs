@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use bevy_ecs::prelude::World;
 use glam::{Vec3, Vec4};
-use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
+use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::syntax::document::Text;
 
 use super::check::{Kind, motion};
@@ -187,11 +187,12 @@ impl One<'_, '_> {
             let found: Vec<usize> = rows.zip(all).filter(|(_, material)| material.name == inner).map(|(row, _)| row).collect();
             if found.is_empty() {
                 let known = || all.iter().map(|material| material.name.as_str());
-                self.problems.add(
+                self.problems.add_unknown(
                     Diagnostic::error("scene::unknown-material", format!("the file `{file}` has no material `{inner}`"))
-                        .at(name.span, "no such material")
-                        .note(format!("materials of the file: {}", list_names(known())))
-                        .maybe_hint(did_you_mean(inner, known())),
+                        .at(name.span, "no such material"),
+                    "materials of the file",
+                    Some(inner),
+                    known,
                 );
             }
             return found;
@@ -203,11 +204,12 @@ impl One<'_, '_> {
             return vec![*material];
         }
         let known = || self.document.materials.keys().map(|known| known.value.as_str());
-        self.problems.add(
+        self.problems.add_unknown(
             Diagnostic::error("scene::unknown-material", format!("the timeline changes the material `{name}`, which is not defined"))
-                .at(name.span, "no such material, and no object with a `surface` of its own")
-                .note(format!("materials of the scene: {}", list_names(known())))
-                .maybe_hint(did_you_mean(&name.value, known())),
+                .at(name.span, "no such material, and no object with a `surface` of its own"),
+            "materials of the scene",
+            Some(&name.value),
+            known,
         );
         Vec::new()
     }

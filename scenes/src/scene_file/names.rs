@@ -5,7 +5,7 @@
 use std::collections::BTreeMap;
 use std::ops::Range;
 
-use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
+use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::source::Span;
 use luminaire_graph::syntax::document::Text;
 
@@ -107,16 +107,17 @@ impl<'a> Names<'a> {
                 return inside(asset, name, inner, problems).map(|inner| NodeRef { declaration: *index, inside: Some(inner) });
             }
         }
-        let unknown = |code, message: String| Diagnostic::error(code, message);
-        problems.add(match self.future.get(text) {
-            Some((at, span)) => unknown("scene::later-node", format!("`{text}` is used before it is spawned, at {at} s"))
-                .at(name.span, "is not there yet")
-                .and(*span, "spawned here"),
-            None => unknown("scene::unknown-node", format!("the scene has no node `{text}`"))
-                .at(name.span, "no such node")
-                .note(format!("nodes of the scene: {}", list_names(self.by_name.keys().copied())))
-                .maybe_hint(did_you_mean(text, self.by_name.keys().copied())),
-        });
+        let at = |problem: Diagnostic, label: &str| problem.at(name.span, label);
+        match self.future.get(text) {
+            Some((seconds, span)) => {
+                let message = format!("`{text}` is used before it is spawned, at {seconds} s");
+                problems.add(at(Diagnostic::error("scene::later-node", message), "is not there yet").and(*span, "spawned here"));
+            }
+            None => {
+                let problem = at(Diagnostic::error("scene::unknown-node", format!("the scene has no node `{text}`")), "no such node");
+                problems.add_unknown(problem, "nodes of the scene", Some(text), || self.by_name.keys().copied());
+            }
+        }
         None
     }
 
@@ -244,11 +245,11 @@ fn inside(asset: &StoredAsset, name: &Text, inner: &str, problems: &mut Problems
                 .at(name.span, "could be any of them")
                 .hint("give the node a name of its own in the file"),
         ),
-        (None, _) => problems.add(
-            Diagnostic::error("scene::unknown-node", format!("the file has no node `{inner}`"))
-                .at(name.span, "no such node")
-                .note(format!("nodes of the file: {}", list_names(known())))
-                .maybe_hint(did_you_mean(inner, known())),
+        (None, _) => problems.add_unknown(
+            Diagnostic::error("scene::unknown-node", format!("the file has no node `{inner}`")).at(name.span, "no such node"),
+            "nodes of the file",
+            Some(inner),
+            known,
         ),
     }
     None

@@ -1,7 +1,7 @@
 //! What moves by itself: clips of files, camera paths and controllers.
 
 use glam::{Affine3A, DVec3};
-use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
+use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::source::Span;
 use luminaire_graph::syntax::document::Text;
 
@@ -66,11 +66,11 @@ fn clip(asset: &StoredAsset, of: &str, place: Span, wanted: Option<&Text>, probl
             None => format!("{of} has nothing to play"),
             Some(wanted) => format!("{of} has no clip `{}`", wanted.value),
         };
-        problems.add(
-            Diagnostic::error("scene::unknown-clip", message)
-                .at(wanted.map_or(place, |wanted| wanted.span), "no such clip")
-                .note(format!("clips of the file: {}", list_names(names())))
-                .maybe_hint(wanted.and_then(|wanted| did_you_mean(&wanted.value, names()))),
+        problems.add_unknown(
+            Diagnostic::error("scene::unknown-clip", message).at(wanted.map_or(place, |wanted| wanted.span), "no such clip"),
+            "clips of the file",
+            wanted.map(|wanted| wanted.value.as_str()),
+            names,
         );
     }
     found

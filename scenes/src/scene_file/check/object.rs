@@ -3,7 +3,7 @@
 use std::collections::BTreeMap;
 
 use glam::{UVec3, Vec2, Vec3};
-use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
+use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::source::Span;
 use luminaire_graph::syntax::document::Text;
 use luminaire_graph::syntax::spanned::Spanned;
@@ -165,11 +165,12 @@ fn object_material(
 fn named_material(document: &SceneDoc, of: &str, wanted: &Text, problems: &mut Problems) -> usize {
     document.materials.get_index_of(wanted).unwrap_or_else(|| {
         let known = || document.materials.keys().map(|known| known.value.as_str());
-        problems.add(
+        problems.add_unknown(
             Diagnostic::error("scene::unknown-material", format!("{of} has the material `{}`, which is not defined", wanted.value))
-                .at(wanted.span, "no such material")
-                .note(format!("materials of the scene: {}", list_names(known())))
-                .maybe_hint(did_you_mean(&wanted.value, known())),
+                .at(wanted.span, "no such material"),
+            "materials of the scene",
+            Some(&wanted.value),
+            known,
         );
         0
     })

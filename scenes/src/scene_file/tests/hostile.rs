@@ -39,6 +39,15 @@ fn many_entries_load() {
 }
 
 #[test]
+fn many_wrong_names_are_not_slow() {
+    let groups = (0..20_000).fold(String::from("(groups: {"), |text, index| text + &format!("\"g{index}\": (parent: \"wrong {index}\"),"));
+    let (problems, _) = problems(&(groups + "})"));
+    assert_eq!(problems.len(), 20_000);
+    assert!(problems.iter().all(|problem| problem.code == "scene::unknown-node"));
+    assert_eq!(problems.iter().filter(|problem| !problem.notes.is_empty()).count(), 20);
+}
+
+#[test]
 fn grids_and_triangles_are_limited() {
     let grid = |count: &str| {
         format!("(objects: {{ \"g\": (shape: Box(size: (1, 1, 1)), surface: (), repeat: (count: {count}, spacing: (1, 1, 1))) }})")
