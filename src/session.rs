@@ -149,6 +149,11 @@ fn compile_for(facts: &DeviceFacts, world: &mut World, request: &RenderRequest<'
     }
 }
 
+/// Whether frames of a pipeline depend on those before them ([`Plan::carries_over`]), for what the world has now.
+pub fn carries_over(adapter: &Adapter, world: &mut World, request: &RenderRequest<'_>) -> Result<bool, Problems> {
+    compile_for(&adapter.facts(), world, request).map(|compiled| compiled.plan.carries_over())
+}
+
 /// What the world has, with what has just come into it.
 fn counts_now(world: &mut World) -> SceneCounts {
     assign_slots(world);
@@ -241,14 +246,6 @@ impl Session {
             return self.update(world).map(|()| false);
         }
         self.reload(world, request).map(|()| true)
-    }
-
-    /// Whether frames depend on those before them, if the scene becomes as it is in the world now. Leaves the session as it is.
-    pub fn would_carry_over(&self, world: &mut World, request: &RenderRequest<'_>) -> Result<bool, Problems> {
-        if counts_now(world) == self.counts {
-            return Ok(self.plan.carries_over());
-        }
-        compile_for(&self.facts, world, request).map(|compiled| compiled.plan.carries_over())
     }
 
     /// Whether some pass runs in every frame, so that the image never settles.

@@ -7,16 +7,17 @@ use luminaire_graph::compile::CompileInput;
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::source::SourceMap;
-use luminaire_passes::FrameStats;
+use luminaire_passes::{Adapter, FrameStats};
 use luminaire_scenes::world::set_time;
 use serde_json::Value;
 
 use super::arguments::RenderArguments;
 use super::plan::one_of_everything;
 use super::progress::Progress;
+use super::report;
+use super::sequence::{self, Job};
 use super::stats::{self, Executed};
 use super::target::{Images, Target};
-use super::{report, sequence};
 use crate::files::DiskFiles;
 use crate::image_file::{write_file, write_image};
 use crate::session::{LoadedScene, Problems, RenderRequest, Session, compile_pipeline, load_scene};
@@ -38,11 +39,7 @@ fn render(arguments: &RenderArguments) -> Result<(), Problems> {
     let loaded = load_scene(&arguments.scene, arguments.asset_root.as_deref());
     let LoadedScene { mut world, diagnostics, sources } = loaded.inspect_err(|_| report_pipeline(&progress, arguments))?;
     progress.report(&diagnostics, &sources);
-    let begin = match &target.images {
-        Images::One { .. } => arguments.time,
-        Images::Sequence(sequence) => Some(sequence.time(*sequence.frames.start())),
-    };
-    if let Some(seconds) = begin {
+    if let Some(seconds) = arguments.time {
         set_time(&mut world, seconds).map_err(|problems| (problems, sources))?;
     }
 
@@ -57,35 +54,32 @@ fn render(arguments: &RenderArguments) -> Result<(), Problems> {
         timing: arguments.stats.is_some(),
         memory_budget: Some(arguments.memory_budget.saturating_mul(1 << 20)),
     };
-    let mut session = Session::new(&mut world, &request)?;
-    let stats = match target.images {
-        Images::One { frames } => image(&mut session, frames, &outputs[0], arguments, &progress)?,
-        Images::Sequence(sequence) => sequence::render(sequence::Job {
-            session: &mut session,
-            world: &mut world,
-            request: &request,
-            sequence: &sequence,
-            output: &outputs[0],
-            scene: &arguments.scene,
-            measure: arguments.stats.is_some(),
-            progress: &progress,
-        })?,
+    let adapter = Adapter::choose(request.memory_budget).map_err(nowhere)?;
+    let stats = match &target.images {
+        Images::One { frames } => {
+            let mut session = Session::on(&adapter, &mut world, &request)?;
+            image(&mut session, *frames, &outputs[0], arguments, &progress)?
+        }
+        Images::Sequence(sequence) => {
+            let request = &request;
+            sequence::render(Job { adapter: &adapter, world, request, sequence, output: &outputs[0], arguments, progress: &progress })?
+        }
     };
-    if let Some(path) = &arguments.stats {
+    if let (Some(path), Some(stats)) = (&arguments.stats, stats) {
         write_file(path, format!("{stats:#}\n").as_bytes()).map_err(|problem| nowhere(vec![problem]))?;
     }
     progress.done();
     Ok(())
 }
 
-/// Renders and writes one image, and returns its statistics.
+/// Renders and writes one image, and returns its statistics if they are asked for.
 fn image(
     session: &mut Session,
     frames: Option<u32>,
     output: &str,
     arguments: &RenderArguments,
     progress: &Progress,
-) -> Result<Value, Problems> {
+) -> Result<Option<Value>, Problems> {
     if frames.is_none() && session.never_settles() {
         let message = format!("`{}` has a pass that runs in every frame, so that the image never settles", arguments.pipeline);
         return Err(nowhere(vec![Diagnostic::error("render::every-frame", message).hint("say how many: --frames 64")]));
@@ -99,7 +93,7 @@ fn image(
     executed.elapsed = started.elapsed();
     progress.say("writing the image");
     write_image(&arguments.file, &image).map_err(|problem| nowhere(vec![problem]))?;
-    Ok(stats::of_image(session, &arguments.scene, &executed))
+    Ok(arguments.stats.as_ref().map(|_| stats::of_image(session, &arguments.scene, &executed)))
 }
 
 /// Runs so many frames, or frames until one has nothing to do. `before` is told how many ran.
