@@ -3,12 +3,13 @@
 #[path = "support/mod.rs"]
 mod support;
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use std::time::Duration;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use luminaire::passes::Adapter;
+use support::gltf::Gltf;
 use support::program::{done, luminaire, refused, run};
 use support::trial;
 
@@ -45,31 +46,84 @@ fn json(path: &Path) -> Result<serde_json::Value, Failed> {
     Ok(serde_json::from_slice(&std::fs::read(path)?)?)
 }
 
+/// A square that an animation moves, a floor, and lights that come and go: frames of one second each differ.
+fn moving(folder: &Path) -> Result<PathBuf, Failed> {
+    let mut gltf = Gltf::default();
+    let red = gltf.material(serde_json::json!({ "pbrMetallicRoughness": { "baseColorFactor": [0.8, 0.1, 0.1, 1.0] } }));
+    gltf.quad(red, None);
+    gltf.node(serde_json::json!({ "mesh": 0, "name": "square" }));
+    gltf.slide(&[0.0, 4.0], &[[-1.0, 1.0, 0.0], [1.0, 1.0, 0.0]]);
+    std::fs::write(folder.join("square.gltf"), gltf.text())?;
+    let text = "(
+        cameras: { \"main\": (position: (0, 1.5, 5), target: (0, 0.8, 0)), \"side\": (position: (4, 2, 3), target: (0, 0.8, 0)) },
+        lights: { \"lamp\": Point(candela: 4, position: (-2, 2.5, 1)) },
+        objects: { \"floor\": (shape: Plane(size: (8, 8)), surface: (base_color: (0.5, 0.5, 0.5))) },
+        files: { \"square\": (path: \"square.gltf\") },
+        timeline: [
+            (at: 0.5, do: Spawn(lights: { \"second\": Point(candela: 6, position: (2, 2, 2)), \"third\": Point(candela: 2, position: (0, 3, 1)) })),
+            (at: 1.5, do: Remove(node: \"second\")),
+            (at: 1.5, do: Spawn(lights: { \"sun\": Directional(lux: 2, direction: (-1, -2, -1)) })),
+            (at: 2.5, do: Remove(node: \"third\")),
+        ],
+    )";
+    std::fs::write(folder.join("moving.ron"), text)?;
+    Ok(folder.join("moving.ron"))
+}
+
 /// Frame n has the bytes of the image of its time, whatever came before; the folder is made, and the statistics tell of each frame.
+/// Lights that come and go change the plan on the way.
 fn frames_as_alone() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
+    let moving = moving(folder.path())?;
     let stats = folder.path().join("stats.json");
-    for (extension, more) in [("png", &[][..]), ("exr", &["--camera", "main"])] {
+    for (extension, scene, range, more) in [
+        ("png", text(&moving)?, 0..=4, &[][..]),
+        ("exr", text(&moving)?, 1..=3, &["--camera", "side"]),
+        ("jump.png", "scenes/spawned.ron", 2..=3, &[]),
+    ] {
         let frames = folder.path().join("made/for").join(extension);
         let pattern = frames.join(format!("f%03d.{extension}"));
-        let fixed = ["render", PBR, "--scene", CORNELL, "-o"];
-        let sequence = ["--frames", "9..=11", "--fps", "10", "--stats", text(&stats)?];
+        let fixed = ["render", PBR, "--scene", scene, "-o"];
+        let selection = format!("{}..={}", range.start(), range.end());
+        let sequence = ["--frames", &selection, "--fps", "1", "--stats", text(&stats)?];
         done(&[&fixed[..], &[text(&pattern)?], &SMALL, more, &sequence].concat())?;
         let found = files(&frames)?;
         let alone = folder.path().join(format!("alone.{extension}"));
         let mut expected = BTreeMap::new();
-        for (frame, time) in [(9, "0.9"), (10, "1"), (11, "1.1")] {
-            done(&[&fixed[..], &[text(&alone)?], &SMALL, more, &["--time", time]].concat())?;
+        for frame in range.clone() {
+            done(&[&fixed[..], &[text(&alone)?], &SMALL, more, &["--time", &frame.to_string()]].concat())?;
             expected.insert(format!("f{frame:03}.{extension}"), std::fs::read(&alone)?);
         }
         same(extension, &found, &expected)?;
+        let distinct: BTreeSet<&Vec<u8>> = found.values().collect();
+        if distinct.len() != found.len() {
+            return Err(format!("{scene}: some of {selection} are equal, so that nothing was compared").into());
+        }
         let stats = json(&stats)?;
-        let frames: Vec<_> = stats["frames"].as_array().into_iter().flatten().map(|f| (f["frame"].as_u64(), f["time"].as_f64())).collect();
-        if frames != [(Some(9), Some(0.9)), (Some(10), Some(1.0)), (Some(11), Some(1.1))] || stats["carries_over"] != false {
+        let told: Vec<_> = stats["frames"].as_array().into_iter().flatten().map(|f| (f["frame"].as_u64(), f["time"].as_f64())).collect();
+        let expected: Vec<_> = range.map(|frame| (Some(frame), Some(frame as f64))).collect();
+        if told != expected || stats["carries_over"] != false {
             return Err(format!("the statistics say {stats}").into());
         }
     }
     Ok(())
+}
+
+/// What is missing of a sequence can be completed where time can't go back, too: things that came and went are there again.
+fn moving_and_completed() -> Result<(), Failed> {
+    let folder = tempfile::tempdir()?;
+    let moving = moving(folder.path())?;
+    let frames = folder.path().join("frames");
+    let pattern = frames.join("%d.png");
+    let command =
+        [&["render", PBR, "--scene", text(&moving)?, "-o", text(&pattern)?, "--frames", "0..5", "--fps", "1"][..], &SMALL].concat();
+    done(&command)?;
+    let whole = files(&frames)?;
+    for missing in ["0.png", "2.png", "3.png"] {
+        std::fs::remove_file(frames.join(missing))?;
+    }
+    done(&command)?;
+    same("completed", &files(&frames)?, &whole)
 }
 
 /// A pipeline that adds 0.2 to its picture each time that it runs, in `folder`.
@@ -192,9 +246,8 @@ fn wrong_requests() -> Result<(), Failed> {
             &["render::no-sequence", "`--fps`", "`--overwrite`", "`--warm-up`"],
         ),
         (&["-o", &field, "--frames", "0..3", "--stats", &first], &["output::same-path"]),
-        (&["-o", &plain, "--time", "-1"], &["world::"]),
-        (&["-o", &plain, "--time", "nan"], &["world::"]),
-        (&["-o", &many, "--frames", "5..6", "--fps", "1e-308"], &["world::"]),
+        (&["-o", &plain, "--time", "nan"], &["world::bad-time"]),
+        (&["-o", &many, "--frames", "5..6", "--fps", "1e-308"], &["world::bad-time"]),
     ];
     for (more, expected) in cases {
         refused(&[&["render", PBR, "--scene", CORNELL, "--size", "8x8"][..], more].concat(), expected, folder.path())?;
@@ -232,6 +285,7 @@ fn main() {
     let adapter = Adapter::choose(None).is_err().then_some("a Vulkan adapter");
     let trials: Vec<Trial> = vec![
         trial("a frame has the bytes that it has alone", adapter, frames_as_alone),
+        trial("a moving scene is completed", adapter, moving_and_completed),
         trial("frames that gather run once each", adapter, frames_that_gather),
         trial("what is missing is completed", adapter, completed_by_the_same_command),
         trial("a killed sequence is completed", adapter, killed_and_completed),

@@ -16,7 +16,7 @@ use super::frames::{FrameSelection, parse_frames};
 Examples:
   luminaire render pipelines/pbr.ron --scene scenes/cornell.ron -o cornell.png
   luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set exposure=1
-  luminaire render pipelines/pbr.ron --scene moving.glb --frames 0..120 -o frames/%04d.png
+  luminaire render pipelines/pbr.ron --scene scenes/day_night.ron --frames 0..720 -o frames/%04d.png
   luminaire check pipelines/*.ron
   luminaire plan pipelines/pbr.ron --format html > plan.html
   luminaire explain pipelines/pbr.ron --change camera
@@ -96,7 +96,7 @@ frame of the range is rendered once, and to complete a sequence renders it again
     #[arg(long)]
     pub overwrite: bool,
     /// How many frames to render before the first of a sequence, at its time, where frames depend on those before them
-    #[arg(long, value_name = "N")]
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
     pub warm_up: Option<u32>,
     /// The scene's time in one image, seconds since it began; the scene as it was loaded, if not given
     #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
