@@ -3,10 +3,16 @@
 mod arguments;
 mod check;
 mod explain;
+mod frames;
 mod info;
+mod pattern;
 mod plan;
+mod progress;
 mod render;
 mod scene;
+mod sequence;
+mod stats;
+mod target;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;

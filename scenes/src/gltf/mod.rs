@@ -84,6 +84,17 @@ pub fn load_within(path: &Path, root: &Path) -> Result<Loaded, Vec<Diagnostic>> 
     load_from(path, Some(root))
 }
 
+/// Loads a file that is already in memory, `.gltf` or `.glb`. It can name no files, only data URIs. `name` is for messages.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Loaded, Vec<Diagnostic>> {
+    let report = Report::new(name.to_owned());
+    let asset = container::parse(bytes, &report).and_then(|container| read(container, &Folder::Nowhere, &report));
+    finish(asset, report)
+}
+
 fn load_from(path: &Path, root: Option<&Path>) -> Result<Loaded, Vec<Diagnostic>> {
     let report = Report::new(path.display().to_string());
     let asset = match Folder::of(path, root) {
@@ -93,6 +104,10 @@ fn load_from(path: &Path, root: Option<&Path>) -> Result<Loaded, Vec<Diagnostic>
             None
         }
     };
+    finish(asset, report)
+}
+
+fn finish(asset: Option<Asset>, report: Report) -> Result<Loaded, Vec<Diagnostic>> {
     let warnings = report.finish()?;
     Ok(Loaded { asset: asset.unwrap_or_default(), warnings })
 }
