@@ -12,8 +12,18 @@ use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile};
 static PIPELINES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 /// Scene files; a test checks that none is missing here.
-static SCENES: &[(&str, &str)] =
-    &[("cornell.ron", include_str!("../scenes/cornell.ron")), ("materials.ron", include_str!("../scenes/materials.ron"))];
+static SCENES: &[(&str, &str)] = &[
+    ("cornell.ron", include_str!("../scenes/cornell.ron")),
+    ("day_night.ron", include_str!("../scenes/day_night.ron")),
+    ("hall.ron", include_str!("../scenes/hall.ron")),
+    ("materials.ron", include_str!("../scenes/materials.ron")),
+    ("probe_grid.ron", include_str!("../scenes/probe_grid.ron")),
+    ("room.ron", include_str!("../scenes/room.ron")),
+    ("scene1.ron", include_str!("../scenes/scene1.ron")),
+    ("scene2.ron", include_str!("../scenes/scene2.ron")),
+    ("spawned.ron", include_str!("../scenes/spawned.ron")),
+    ("wall_removed.ron", include_str!("../scenes/wall_removed.ron")),
+];
 
 /// Texts larger than this are refused.
 const MAX_TEXT_BYTES: u64 = 64 << 20;

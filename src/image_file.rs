@@ -1,6 +1,7 @@
 //! Rendered images as files: `.png` for what is shown, `.exr` for what was computed.
 //!
-//! A file appears whole or not at all: it is written beside its place under another name, and moved there at the end.
+//! A file appears whole or not at all: it is written beside its place under another name, and moved there at the end. What a program
+//! that was killed left behind can be told from files that are being written: the latter are locked.
 
 use std::io::Write;
 use std::path::Path;
@@ -76,16 +77,42 @@ pub fn write_image(path: &Path, picture: &LinearImage) -> Result<(), Diagnostic>
     write_file(path, &bytes)
 }
 
+/// How the names of files begin that are not whole yet.
+const UNFINISHED: &str = ".luminaire-";
+
 /// Writes a file whole or not at all.
 pub fn write_file(path: &Path, bytes: &[u8]) -> Result<(), Diagnostic> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder_of(path);
     let failed = |error: std::io::Error| unwritable(path, folder, &error);
-    let mut file = tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map_err(failed)?;
+    let mut file = unfinished_in(folder).map_err(failed)?;
+    // Where files can't be locked, nothing is swept either.
+    let _ = file.as_file().lock();
     file.write_all(bytes).map_err(failed)?;
     file.as_file().sync_all().map_err(failed)?;
     make_readable(&file).map_err(failed)?;
     file.persist(path).map_err(|error| failed(error.error))?;
     Ok(())
+}
+
+/// Removes the files that programs left in a folder which were killed while they wrote. What is being written stays, and what can't be
+/// removed, too.
+pub fn sweep_unfinished(folder: &Path) {
+    let Ok(entries) = std::fs::read_dir(folder) else { return };
+    for entry in entries.flatten().filter(|entry| entry.file_name().to_string_lossy().starts_with(UNFINISHED)) {
+        let is_file = entry.file_type().is_ok_and(|kind| kind.is_file());
+        if is_file && std::fs::File::open(entry.path()).is_ok_and(|file| file.try_lock().is_ok()) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
+/// The folder that a path is in.
+fn folder_of(path: &Path) -> &Path {
+    path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."))
+}
+
+fn unfinished_in(folder: &Path) -> std::io::Result<tempfile::NamedTempFile> {
+    tempfile::Builder::new().prefix(UNFINISHED).tempfile_in(folder)
 }
 
 /// Temporary files are private; results have the usual permissions.
@@ -102,13 +129,28 @@ fn make_readable(_: &tempfile::NamedTempFile) -> std::io::Result<()> {
 
 /// Checks that a path can be written before anything is rendered for it.
 pub fn check_writable(path: &Path) -> Result<(), Diagnostic> {
-    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     if path.is_dir() {
         return Err(
             Diagnostic::error("output::write", format!("can't write `{}`: it is a folder", path.display())).hint("name a file in it")
         );
     }
-    tempfile::Builder::new().prefix(".luminaire-").tempfile_in(folder).map(|_| ()).map_err(|error| unwritable(path, folder, &error))
+    check_folder(path, folder_of(path))
+}
+
+/// The same where folders that are missing will be made.
+pub fn check_creatable(path: &Path) -> Result<(), Diagnostic> {
+    let nearest = path.ancestors().skip(1).find(|folder| folder.exists()).unwrap_or(Path::new("."));
+    check_folder(path, nearest)
+}
+
+fn check_folder(path: &Path, folder: &Path) -> Result<(), Diagnostic> {
+    unfinished_in(folder).map(|_| ()).map_err(|error| unwritable(path, folder, &error))
+}
+
+/// Makes the folder that a path is in, and those around it.
+pub fn create_folder_of(path: &Path) -> Result<(), Diagnostic> {
+    let folder = folder_of(path);
+    std::fs::create_dir_all(folder).map_err(|error| unwritable(path, folder, &error))
 }
 
 /// Says why in terms of the path that was asked for: the temporary file's name means nothing to its reader.
@@ -123,4 +165,41 @@ fn unwritable(path: &Path, folder: &Path, error: &std::io::Error) -> Diagnostic 
     };
     Diagnostic::error("output::write", format!("can't write `{}`: {reason}", path.display()))
         .hint("choose a path in a folder that exists and may be written to")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_nobody_writes_any_more_is_swept() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = |name: &str| folder.path().join(name);
+        for name in [".luminaire-a1B2c3", ".luminaire-locked", "0001.png", ".hidden"] {
+            std::fs::write(path(name), b"half").unwrap();
+        }
+        std::fs::create_dir(path(".luminaire-folder")).unwrap();
+        let held = std::fs::File::open(path(".luminaire-locked")).unwrap();
+        held.lock().unwrap();
+        sweep_unfinished(folder.path());
+        let left = |name: &str| path(name).exists();
+        assert!(!left(".luminaire-a1B2c3"));
+        assert!(left(".luminaire-locked") && left("0001.png") && left(".hidden") && left(".luminaire-folder"));
+        drop(held);
+        sweep_unfinished(folder.path());
+        assert!(!left(".luminaire-locked"));
+    }
+
+    #[test]
+    fn folders_that_are_missing_can_be_made_or_not() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a/b/0001.png");
+        check_creatable(&path).unwrap();
+        assert!(!folder.path().join("a").exists());
+        assert!(check_writable(&path).is_err());
+        create_folder_of(&path).unwrap();
+        check_writable(&path).unwrap();
+        std::fs::write(&path, b"").unwrap();
+        assert!(check_creatable(&path.join("c/0001.png")).unwrap_err().message.contains("is no folder"));
+    }
 }

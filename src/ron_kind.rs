@@ -6,7 +6,7 @@
 /// Fields that only pipelines have.
 const PIPELINE: [&str; 7] = ["params", "resources", "passes", "outputs", "blocks", "inputs", "extend"];
 /// Fields that only scenes have.
-const SCENE: [&str; 6] = ["environment", "materials", "cameras", "lights", "objects", "files"];
+const SCENE: [&str; 9] = ["environment", "materials", "groups", "cameras", "lights", "objects", "files", "markers", "timeline"];
 
 /// What a RON file is.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

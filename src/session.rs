@@ -7,11 +7,12 @@ use luminaire_graph::compile::{Compilation, CompileInput, compile};
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
+use luminaire_graph::published::SceneCounts;
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats, Gpu};
 use luminaire_scenes::publish::{PublishRequest, Published, Publisher, counts, schema};
 use luminaire_scenes::scene_file;
-use luminaire_scenes::world::World;
+use luminaire_scenes::world::{World, assign_slots};
 
 use crate::files::{DiskFiles, embedded_pipelines, embedded_scene, embedded_scenes};
 use crate::image_file::LinearImage;
@@ -115,6 +116,8 @@ pub struct Session {
     executor: Executor,
     publisher: Publisher,
     camera: Option<String>,
+    /// What the scene had when the plan was compiled.
+    counts: SceneCounts,
     facts: DeviceFacts,
     timing: bool,
     recoveries: u64,
@@ -123,16 +126,18 @@ pub struct Session {
 /// A plan, with the warnings of its compilation and the texts that they point into.
 struct Compiled {
     plan: Arc<Plan>,
+    counts: SceneCounts,
     warnings: Vec<Diagnostic>,
     sources: SourceMap,
 }
 
 fn compile_for(facts: &DeviceFacts, world: &mut World, request: &RenderRequest<'_>) -> Result<Compiled, Problems> {
+    let counts = counts_now(world);
     let compilation = compile_pipeline(&CompileInput {
         pipeline: request.pipeline,
         files: &DiskFiles::for_pipeline(Path::new(request.pipeline)),
         published: &schema(),
-        counts: &counts(world),
+        counts: &counts,
         device: facts,
         output: request.size,
         sets: request.sets,
@@ -140,9 +145,20 @@ fn compile_for(facts: &DeviceFacts, world: &mut World, request: &RenderRequest<'
     });
     let (warnings, sources) = (compilation.diagnostics, compilation.sources);
     match compilation.plan {
-        Some(plan) => Ok(Compiled { plan: Arc::new(plan), warnings, sources }),
+        Some(plan) => Ok(Compiled { plan: Arc::new(plan), counts, warnings, sources }),
         None => Err((warnings, sources)),
     }
+}
+
+/// Whether frames of a pipeline depend on those before them ([`Plan::carries_over`]), for what the world has now.
+pub fn carries_over(adapter: &Adapter, world: &mut World, request: &RenderRequest<'_>) -> Result<bool, Problems> {
+    compile_for(&adapter.facts(), world, request).map(|compiled| compiled.plan.carries_over())
+}
+
+/// What the world has, with what has just come into it.
+fn counts_now(world: &mut World) -> SceneCounts {
+    assign_slots(world);
+    counts(world)
 }
 
 /// What the world publishes for a plan.
@@ -167,7 +183,7 @@ impl Session {
     /// The same on an adapter that the caller has chosen.
     pub fn on(adapter: &Adapter, world: &mut World, request: &RenderRequest<'_>) -> Result<Session, Problems> {
         let facts = adapter.facts();
-        let Compiled { plan, mut warnings, sources } = compile_for(&facts, world, request)?;
+        let Compiled { plan, counts, mut warnings, sources } = compile_for(&facts, world, request)?;
         let mut publisher = Publisher::default();
         let made = publish_for(&mut publisher, world, &plan, request.camera, &facts).and_then(|published| {
             warnings.extend(published.warnings);
@@ -184,6 +200,7 @@ impl Session {
                 executor,
                 publisher,
                 camera: request.camera.map(str::to_owned),
+                counts,
                 facts,
             }),
             Err(problems) => {
@@ -231,6 +248,15 @@ impl Session {
         updated.map_err(|problems| (problems, self.warnings.1.clone()))
     }
 
+    /// The same for a scene in which things come and go: where it has another number of something than the plan was compiled for, it is
+    /// compiled anew. Returns whether it was, and [`Session::warnings`] are new.
+    pub fn follow(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<bool, Problems> {
+        if counts_now(world) == self.counts {
+            return self.update(world).map(|()| false);
+        }
+        self.reload(world, request).map(|()| true)
+    }
+
     /// Whether some pass runs in every frame, so that the image never settles.
     pub fn never_settles(&self) -> bool {
         self.executor.never_settles()
@@ -250,7 +276,7 @@ impl Session {
     /// pipelines that did not change are not built again; a plan that needs a feature which the device was opened without gets another
     /// device, and runs everything. After an error the last good plan goes on.
     pub fn reload(&mut self, world: &mut World, request: &RenderRequest<'_>) -> Result<(), Problems> {
-        let Compiled { plan, mut warnings, sources } = compile_for(&self.facts, world, request)?;
+        let Compiled { plan, counts, mut warnings, sources } = compile_for(&self.facts, world, request)?;
         let adopted = publish_for(&mut self.publisher, world, &plan, request.camera, &self.facts).and_then(|published| {
             warnings.extend(published.warnings);
             let scene = Arc::new(published.scene);
@@ -265,7 +291,7 @@ impl Session {
         match adopted {
             Ok(()) => {
                 self.camera = request.camera.map(str::to_owned);
-                (self.plan, self.warnings) = (plan, (warnings, sources));
+                (self.plan, self.counts, self.warnings) = (plan, counts, (warnings, sources));
                 Ok(())
             }
             Err(problems) => Err((problems, sources)),

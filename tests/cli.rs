@@ -4,45 +4,11 @@
 mod support;
 
 use std::path::Path;
-use std::process::{Command, Output};
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use luminaire::passes::Adapter;
+use support::program::{luminaire, refused, run};
 use support::{shared, trial};
-
-fn luminaire(arguments: &[&str]) -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_luminaire"));
-    command.args(arguments).current_dir(env!("CARGO_MANIFEST_DIR"));
-    command
-}
-
-fn run(arguments: &[&str]) -> Result<Output, Failed> {
-    let output = luminaire(arguments).output()?;
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    if errors.contains("panicked") || output.status.code().is_none() {
-        return Err(format!("{arguments:?} panicked or was killed:\n{errors}").into());
-    }
-    Ok(output)
-}
-
-/// Runs a command that must fail with status 1 and a message that holds each of `expected`, and must leave `folder` empty.
-fn refused(arguments: &[&str], expected: &[&str], folder: &Path) -> Result<(), Failed> {
-    let output = run(arguments)?;
-    let errors = String::from_utf8_lossy(&output.stderr).into_owned();
-    if output.status.code() != Some(1) {
-        return Err(format!("{arguments:?} ended with {:?}:\n{errors}", output.status.code()).into());
-    }
-    for text in expected {
-        if !errors.contains(text) {
-            return Err(format!("{arguments:?} does not say `{text}`:\n{errors}").into());
-        }
-    }
-    if errors.contains('\u{1b}') {
-        return Err("colours without a terminal".into());
-    }
-    let left: Vec<_> = std::fs::read_dir(folder)?.flatten().map(|entry| entry.file_name()).collect();
-    if left.is_empty() { Ok(()) } else { Err(format!("{arguments:?} left {left:?}").into()) }
-}
 
 fn bad_input() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
@@ -102,13 +68,40 @@ fn wrong_paths() -> Result<(), Failed> {
         (&["plan", "pipelines"], &["load::missing-file", "it is a folder"]),
         (&["plan", pbr, "--set", "exposure=nan", "--set", "foo=1"], &["expand::bad-set", "expand::unknown-param"]),
         (&["plan", pbr, "--size", "4294967295x1"], &["expand::size-over-limit"]),
-        (&["check", "scenes/none.ron"], &["scene::unreadable", cornell]),
+        (&["check", "scenes/nowhere_to_be_found.ron"], &["scene::unreadable", cornell]),
         (&["check", "none.ron", "none.wgsl", "none.glb", "none"], &["none.ron", "none.wgsl", "none.glb", "check::kind"]),
         (&["check", binary_path], &["not UTF-8 at byte 1"]),
     ];
     let result = cases.iter().try_for_each(|(arguments, expected)| refused(arguments, expected, folder.path()));
     std::fs::remove_file(&binary)?;
     result
+}
+
+/// What a scene holds, now and later, for people and for programs.
+fn scenes() -> Result<(), Failed> {
+    let scene = "scenes/wall_removed.ron";
+    let said = |arguments: &[&str], expected: &[&str]| -> Result<String, Failed> {
+        let text = String::from_utf8(run(arguments)?.stdout)?;
+        match expected.iter().find(|expected| !text.contains(**expected)) {
+            Some(missing) => Err(format!("{arguments:?} does not say `{missing}`:\n{text}").into()),
+            None => Ok(text),
+        }
+    };
+    let text = said(&["scene", scene], &["outer wall", "point light, 60 cd", "EV100 3.5", "spawn group `blast`", "memory", "bounds"])?;
+    if text.contains("rubble 1   ") {
+        return Err("rubble lies there before the wall falls".into());
+    }
+    let later = said(&["scene", scene, "--time", "3"], &["rubble 1   ", "time       3 s"])?;
+    if later.contains("outer wall   ") {
+        return Err("the wall still stands".into());
+    }
+    let json: serde_json::Value = serde_json::from_str(&said(&["scene", scene, "--format", "json"], &[])?)?;
+    if json["timeline"][0]["at"] != 2.0 || json["nodes"].as_array().is_none_or(Vec::is_empty) {
+        return Err(format!("the JSON lacks something: {json}").into());
+    }
+    let folder = tempfile::tempdir()?;
+    refused(&["scene", "scenes/nowhere_to_be_found.ron"], &["scene::unreadable", "scenes/cornell.ron"], folder.path())?;
+    refused(&["scene", scene, "--time", "nan"], &["world::bad-time"], folder.path())
 }
 
 /// Wrong usage is status 2, before anything is loaded.
@@ -303,6 +296,7 @@ fn main() {
     let trials: Vec<Trial> = vec![
         trial("bad input is refused", adapter, bad_input),
         trial("wrong paths are explained", None, wrong_paths),
+        trial("scenes are described", None, scenes),
         trial("wrong usage is status 2", None, usage),
         trial("damaged files are read or refused", None, damaged_files),
         trial("a missing adapter is explained", None, no_adapter),

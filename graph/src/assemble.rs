@@ -5,7 +5,7 @@
 
 use crate::allocate::Allocation;
 use crate::bind::types::Bound;
-use crate::expand::types::{PassId, ResourceId, Shape};
+use crate::expand::types::{PassId, ResourceId, Run, Shape};
 use crate::lifetime::Lifetimes;
 use crate::plan::{BindingTarget, InputId, MemoryKind, Plan, PlannedOutput, PlannedResource, PlannedShape, Step, StepKind};
 use crate::schedule::part::Rect;
@@ -200,6 +200,12 @@ impl Plan {
     /// The place of a pass in the order, if it runs.
     pub fn place_of(&self, pass: PassId) -> Option<usize> {
         self.steps.iter().position(|step| step.pass == pass)
+    }
+
+    /// Whether an image depends on the frames before it, and not on the state of its inputs alone: something is remembered, gathered or
+    /// spread over frames, or runs in every frame.
+    pub fn carries_over(&self) -> bool {
+        self.steps.iter().any(|step| step.run != Run::OnChange || matches!(step.kind, StepKind::Remember { .. }))
     }
 
     /// The memory kind that a resource needs.

@@ -1,13 +1,13 @@
-//! What a loader hands over: meshes, materials, images, lights, cameras and a node tree, all checked.
+//! What a loader hands over: meshes, materials, images, lights, cameras, animations and a node tree, all checked.
 //!
 //! Guarantees: every index is in range, every number is finite (unless its field says otherwise), the nodes form a forest in
 //! which parents stand before their children, and each mesh has at least one triangle.
-//! Units: metres, radians, candela (point, spot), lux (directional), nits (emission); colours are linear Rec.709.
+//! Units: metres, seconds, radians, candela (point, spot), lux (directional), nits (emission); colours are linear Rec.709.
 
 use std::sync::Arc;
 
 use bytemuck::{Pod, Zeroable};
-use glam::{Affine3A, Vec2, Vec3};
+use glam::{Affine3A, Quat, Vec2, Vec3, Vec4};
 
 /// One vertex, as it stands in the geometry buffer: 64 bytes, all members 32-bit floats.
 #[repr(C)]
@@ -263,6 +263,79 @@ pub struct Camera {
     pub projection: Projection,
 }
 
+/// A transform in parts: scale, then rotation, then translation.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Pose {
+    /// Metres.
+    pub translation: Vec3,
+    /// Unit length.
+    pub rotation: Quat,
+    /// Per axis; may be zero or negative.
+    pub scale: Vec3,
+}
+
+impl Default for Pose {
+    fn default() -> Pose {
+        Pose { translation: Vec3::ZERO, rotation: Quat::IDENTITY, scale: Vec3::ONE }
+    }
+}
+
+impl Pose {
+    /// All parts in one.
+    pub fn matrix(&self) -> Affine3A {
+        Affine3A::from_scale_rotation_translation(self.scale, self.rotation, self.translation)
+    }
+}
+
+/// What an animation moves of a node.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub enum Property {
+    /// [`Pose::translation`].
+    Translation,
+    /// [`Pose::rotation`].
+    Rotation,
+    /// [`Pose::scale`].
+    Scale,
+}
+
+/// What lies between two keys.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Interpolation {
+    /// The value of the key before.
+    Step,
+    /// A straight line; for rotations the shorter arc of a great circle, at constant speed.
+    Linear,
+    /// A cubic Hermite spline; for rotations on the four components, which are normalised afterwards.
+    CubicSpline,
+}
+
+/// One property of one node over time.
+#[derive(Debug, Clone)]
+pub struct Channel {
+    /// Index into [`Asset::nodes`]; the node has a [`Node::pose`].
+    pub node: usize,
+    /// What moves.
+    pub property: Property,
+    /// How values between keys come about.
+    pub interpolation: Interpolation,
+    /// Keys, seconds: at least one, none before its predecessor. Two at one time are a jump.
+    pub times: Arc<[f32]>,
+    /// A value for each key; with [`Interpolation::CubicSpline`] three: the tangent towards the key (per second), the value, the
+    /// tangent away from it. `xyz` of translations and scales, `xyzw` of rotations.
+    pub values: Arc<[Vec4]>,
+}
+
+/// Motion of nodes that belongs together.
+#[derive(Debug, Clone)]
+pub struct Animation {
+    /// To choose it by.
+    pub name: String,
+    /// Seconds from 0 to the last key, of channels that are left out, too.
+    pub duration: f32,
+    /// Each property of a node stands here once at most. Empty if the animation moves nothing that the scene uses.
+    pub channels: Vec<Channel>,
+}
+
 /// A place in the hierarchy.
 #[derive(Debug, Clone)]
 pub struct Node {
@@ -272,6 +345,8 @@ pub struct Node {
     pub parent: Option<usize>,
     /// To the parent's space. May be singular (a scale of zero).
     pub local: Affine3A,
+    /// The parts of `local`, where the file gives them apart.
+    pub pose: Option<Pose>,
     /// Indices into [`Asset::meshes`]: a glTF mesh is one entry per primitive that holds triangles.
     pub meshes: Vec<usize>,
     /// Index into [`Asset::lights`].
@@ -295,6 +370,8 @@ pub struct Asset {
     pub lights: Vec<Light>,
     /// Cameras.
     pub cameras: Vec<Camera>,
+    /// In the order of the file.
+    pub animations: Vec<Animation>,
 }
 
 impl TextureUse {

@@ -4,10 +4,12 @@
 //! world into the tables, textures and draw lists that shaders ask for by name. Nothing here knows a GPU or a pipeline.
 
 pub mod asset;
+pub mod describe;
 pub mod gltf;
 pub mod primitive;
 pub mod publish;
 pub mod scene_file;
+mod timeline;
 pub mod world;
 
 pub use scene_file::{LoadedScene, load_scene, load_scene_text};

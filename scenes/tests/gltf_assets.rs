@@ -1,29 +1,21 @@
 //! The glTF loader over a folder of real, handmade and broken files, which lies beside the repository.
-//!
-//! `LUMINAIRE_SHARED` names the folder that holds `assets/`. Where it is missing the tests say 'ignored', and fail if `CI` is set.
 
 #![allow(clippy::unwrap_used, clippy::expect_used, clippy::panic, reason = "helpers of tests")]
 
-use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+mod support;
+
+use std::collections::{BTreeMap, BTreeSet};
+use std::path::Path;
 use std::time::{Duration, Instant};
 
 use glam::{Affine3A, Vec3};
-use libtest_mimic::{Arguments, Trial};
 use luminaire_graph::diagnostic::Diagnostic;
-use luminaire_scenes::asset::{AlphaMode, Asset, LightKind, Material, MipFilter, Projection, TextureUse};
+use luminaire_scenes::asset::{AlphaMode, Asset, Interpolation, LightKind, Material, MipFilter, Projection, Property, TextureUse};
 use luminaire_scenes::gltf::{Loaded, load, load_within};
+use support::{AssetTest, messages};
 
 /// No single file may take longer, debug builds on a busy machine included.
 const LONGEST: Duration = Duration::from_secs(60);
-
-/// The assets folder, if it is there.
-fn assets() -> Option<PathBuf> {
-    let shared =
-        std::env::var_os("LUMINAIRE_SHARED").map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from);
-    let assets = shared.join("assets");
-    assets.join("MANIFEST.json").is_file().then_some(assets)
-}
 
 /// Loads a file; those of the seed scenes have images in folders beside their own.
 fn load_entry(assets: &Path, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
@@ -33,10 +25,6 @@ fn load_entry(assets: &Path, name: &str) -> Result<Loaded, Vec<Diagnostic>> {
 
 fn load_ok(assets: &Path, name: &str) -> Loaded {
     load_entry(assets, name).unwrap_or_else(|errors| panic!("{name}: {}", messages(&errors)))
-}
-
-fn messages(diagnostics: &[Diagnostic]) -> String {
-    diagnostics.iter().map(|diagnostic| format!("[{}] {}", diagnostic.code, diagnostic.message)).collect::<Vec<_>>().join("\n")
 }
 
 fn scene_triangles(asset: &Asset) -> usize {
@@ -95,6 +83,24 @@ fn check_guarantees(name: &str, asset: &Asset) {
         }
     }
     assert!(world_positions(asset).iter().all(|position| position.is_finite()), "{name}: world positions");
+    check_animations(name, asset);
+}
+
+fn check_animations(name: &str, asset: &Asset) {
+    for animation in &asset.animations {
+        assert!(animation.duration.is_finite() && animation.duration >= 0.0, "{name}: {}", animation.name);
+        let mut moved = BTreeSet::new();
+        for channel in &animation.channels {
+            assert!(asset.nodes[channel.node].pose.is_some_and(|pose| pose.matrix() == asset.nodes[channel.node].local), "{name}");
+            assert!(moved.insert((channel.node, channel.property)), "{name}: {channel:?}");
+            assert!(!channel.times.is_empty() && channel.times.is_sorted() && channel.times.iter().all(|time| time.is_finite()), "{name}");
+            let (is_spline, is_rotation) = (channel.interpolation == Interpolation::CubicSpline, channel.property == Property::Rotation);
+            assert_eq!(channel.values.len(), channel.times.len() * if is_spline { 3 } else { 1 }, "{name}");
+            for value in channel.values.iter() {
+                assert!(value.is_finite() && (is_spline || !is_rotation || value.is_normalized()), "{name}: {value}");
+            }
+        }
+    }
 }
 
 fn textures(material: &Material) -> [Option<TextureUse>; 7] {
@@ -373,9 +379,6 @@ fn damaged_files_never_panic(assets: &Path) {
     assert!(loaded > 100, "{loaded} of the damaged files load: the damage is too coarse to test anything");
 }
 
-/// Runs over the assets folder.
-type AssetTest = fn(&Path);
-
 /// The tests, by name.
 const TESTS: &[(&str, AssetTest)] = &[
     ("every_file_meets_its_expectation", every_file_meets_its_expectation),
@@ -390,24 +393,6 @@ const TESTS: &[(&str, AssetTest)] = &[
     ("damaged_files_never_panic", damaged_files_never_panic),
 ];
 
-/// Runs where the assets are; says 'ignored' where they are not, which is a failure in CI.
-fn asset_trial(name: &str, test: AssetTest, assets: Option<&Path>) -> Trial {
-    match assets {
-        Some(assets) => {
-            let assets = assets.to_owned();
-            Trial::test(name, move || {
-                test(&assets);
-                Ok(())
-            })
-        }
-        None if std::env::var_os("CI").is_some() => Trial::test(name, || Err("the assets are missing, and CI must have them".into())),
-        None => Trial::test(format!("{name} (the assets are missing)"), || Ok(())).with_ignored_flag(true),
-    }
-}
-
 fn main() {
-    let arguments = Arguments::from_args();
-    let assets = assets();
-    let trials = TESTS.iter().map(|(name, test)| asset_trial(name, *test, assets.as_deref())).collect();
-    libtest_mimic::run(&arguments, trials).exit();
+    support::run(TESTS)
 }

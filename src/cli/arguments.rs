@@ -4,6 +4,8 @@ use std::path::PathBuf;
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 
+use super::frames::{FrameSelection, parse_frames};
+
 /// Real-time global illumination from render graphs written in RON.
 #[derive(Debug, Parser)]
 #[command(
@@ -14,6 +16,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 Examples:
   luminaire render pipelines/pbr.ron --scene scenes/cornell.ron -o cornell.png
   luminaire render pipelines/pbr.ron --scene model.glb -o model.exr --size 1920x1080 --set exposure=1
+  luminaire render pipelines/pbr.ron --scene scenes/day_night.ron --frames 0..720 -o frames/%04d.png
   luminaire check pipelines/*.ron
   luminaire plan pipelines/pbr.ron --format html > plan.html
   luminaire explain pipelines/pbr.ron --change camera
@@ -28,7 +31,7 @@ pub(crate) struct Arguments {
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
-    /// Render a scene into an image, without a window
+    /// Render a scene into an image or a sequence of images, without a window
     Render(RenderArguments),
     /// Report every problem of pipelines, shaders and scenes, with its place
     Check(CheckArguments),
@@ -36,6 +39,8 @@ pub(crate) enum Command {
     Plan(PlanArguments),
     /// Show what each change makes run and why, what shares memory and why
     Explain(ExplainArguments),
+    /// Show what a scene holds: nodes, meshes, materials, lights, cameras, timeline, bounds, memory
+    Scene(SceneArguments),
     /// Show the adapter, its limits, and what comes with the program
     Info,
 }
@@ -50,7 +55,8 @@ pub(crate) struct RenderArguments {
     /// The folder that the scene's files may come from; the scene file's own if not given
     #[arg(long, value_name = "DIR")]
     pub asset_root: Option<PathBuf>,
-    /// The image to write: .png holds the output `color`, .exr the output `radiance`
+    /// The image to write: .png holds the output `color`, .exr the output `radiance`. For a range of frames its name has a field for
+    /// the frame's number: %d, or %04d for at least four digits; %% is a percent sign. A folder that is missing is made then
     #[arg(short = 'o', value_name = "FILE")]
     pub file: PathBuf,
     /// Width and height in pixels
@@ -65,10 +71,38 @@ pub(crate) struct RenderArguments {
     /// The pipeline's output to write, instead of `color` or `radiance`
     #[arg(long, value_name = "NAME")]
     pub output: Option<String>,
-    /// How many frames to render before the image is taken; until nothing changes any more, if not given
-    #[arg(long, value_parser = clap::value_parser!(u32).range(1..))]
-    pub frames: Option<u32>,
-    /// Write times per pass, memory figures and counts as JSON
+    /// How many frames to render before the image is taken; until nothing changes any more, if not given. Or which frames become
+    /// images: 0..120 are the frames 0 to 119, 0..=120 ends with frame 120
+    #[arg(
+        long,
+        value_name = "N|A..B",
+        value_parser = parse_frames,
+        allow_hyphen_values = true,
+        long_help = "\
+How many frames to render before the image is taken; until nothing changes any more, if not given.
+
+Or which frames become images: 0..120 are the frames 0 to 119, 0..=120 ends with frame 120. Frame n shows the scene n / fps seconds \
+after it began. Frames whose file exists are left out, so that a sequence which was interrupted can be completed by the same command.
+
+Where no frame depends on those before it, each is rendered until nothing changes any more, and has the same bytes as the image of its \
+time alone. Where one does (the pipeline remembers, gathers or spreads work over frames, or has a pass that runs in every frame), each \
+frame of the range is rendered once, and to complete a sequence renders it again from its first frame, without writing what exists"
+    )]
+    pub frames: Option<FrameSelection>,
+    /// Frames a second of a sequence; 30 if not given
+    #[arg(long, value_name = "N", value_parser = parse_fps, allow_negative_numbers = true)]
+    pub fps: Option<f64>,
+    /// Render all frames of a sequence, also those whose file exists
+    #[arg(long)]
+    pub overwrite: bool,
+    /// How many frames to render before the first of a sequence, at its time, where frames depend on those before them
+    #[arg(long, value_name = "N", allow_negative_numbers = true)]
+    pub warm_up: Option<u32>,
+    /// The scene's time in one image, seconds since it began; the scene as it was loaded, if not given
+    #[arg(long, value_name = "SECONDS", allow_negative_numbers = true)]
+    pub time: Option<f64>,
+    /// Write times per pass, memory figures and counts as JSON; of a sequence with an array `frames`, which has an object for each frame
+    /// that was rendered
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// Refuse plans that allocate more than this
@@ -130,6 +164,29 @@ pub(crate) struct ExplainArguments {
     pub output: Vec<String>,
 }
 
+#[derive(Debug, Args)]
+pub(crate) struct SceneArguments {
+    /// The scene: a .gltf, .glb or scene .ron file
+    pub scene: String,
+    /// How to show it
+    #[arg(long, value_enum, default_value_t = SceneFormat::Text)]
+    pub format: SceneFormat,
+    /// The folder that the scene's files may come from; the scene file's own if not given
+    #[arg(long, value_name = "DIR")]
+    pub asset_root: Option<PathBuf>,
+    /// Show the scene at this time, in seconds; as it was loaded, if not given
+    #[arg(long, value_name = "SECONDS")]
+    pub time: Option<f64>,
+}
+
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum SceneFormat {
+    /// For people
+    Text,
+    /// For programs
+    Json,
+}
+
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(crate) enum ExplainFormat {
     /// For people
@@ -154,6 +211,11 @@ fn parse_size(text: &str) -> Result<[u32; 2], String> {
     let (width, height) = text.split_once(['x', 'X']).ok_or("expected WIDTHxHEIGHT, such as 1280x720")?;
     let axis = |text: &str| text.parse::<u32>().map_err(|_| format!("`{text}` is not a whole number of pixels"));
     Ok([axis(width)?, axis(height)?])
+}
+
+fn parse_fps(text: &str) -> Result<f64, String> {
+    let fps = text.parse::<f64>().ok().filter(|fps| fps.is_finite() && *fps > 0.0);
+    fps.ok_or_else(|| "expected a number greater than zero, such as 30 or 23.976".to_owned())
 }
 
 fn parse_set(text: &str) -> Result<(String, String), String> {

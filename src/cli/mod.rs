@@ -3,9 +3,16 @@
 mod arguments;
 mod check;
 mod explain;
+mod frames;
 mod info;
+mod pattern;
 mod plan;
+mod progress;
 mod render;
+mod scene;
+mod sequence;
+mod stats;
+mod target;
 
 use std::io::{IsTerminal, Write};
 use std::process::ExitCode;
@@ -24,6 +31,7 @@ pub fn run() -> ExitCode {
         Command::Check(arguments) => check::run(arguments),
         Command::Plan(arguments) => plan::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
+        Command::Scene(arguments) => scene::run(arguments),
         Command::Info => info::run(),
     };
     if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }

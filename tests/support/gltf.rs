@@ -22,6 +22,7 @@ pub struct Gltf {
     lights: Vec<Value>,
     cameras: Vec<Value>,
     nodes: Vec<Value>,
+    animations: Vec<Value>,
 }
 
 fn push(list: &mut Vec<Value>, value: Value) -> usize {
@@ -80,6 +81,13 @@ impl Gltf {
         self.nodes.push(node);
     }
 
+    /// Moves the last node along straight lines from place to place, at these seconds.
+    pub fn slide(&mut self, seconds: &[f32], places: &[[f32; 3]]) {
+        let (input, output) = (self.accessor("SCALAR", 1, seconds), self.accessor("VEC3", 3, &places.concat()));
+        let channel = json!({ "sampler": 0, "target": { "node": self.nodes.len() - 1, "path": "translation" } });
+        push(&mut self.animations, json!({ "channels": [channel], "samplers": [{ "input": input, "output": output }] }));
+    }
+
     /// A point light, candela.
     pub fn point_light(&mut self, candela: f64, position: [f64; 3]) {
         let light = push(&mut self.lights, json!({ "type": "point", "intensity": candela }));
@@ -115,6 +123,7 @@ impl Gltf {
             ("meshes", &self.meshes),
             ("cameras", &self.cameras),
             ("nodes", &self.nodes),
+            ("animations", &self.animations),
         ];
         for (name, list) in lists {
             if !list.is_empty() {

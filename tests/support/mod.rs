@@ -11,6 +11,7 @@
 
 pub mod gltf;
 pub mod picture;
+pub mod program;
 
 use std::path::{Path, PathBuf};
 

@@ -1,9 +1,11 @@
 //! Draw passes: winding, culling, depth.
 
+use std::sync::Arc;
+
 use luminaire_graph::expand::types::{ClearValue, ResourceId};
 use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{BindingTarget, DepthTarget, Load, SampleType, Stages, StepKind, Targets};
-use luminaire_graph::published::{DrawBatch, DrawFilter, VertexAttribute, VertexFormat, VertexSchema, ViewKind};
+use luminaire_graph::published::{DrawBatch, DrawFilter, DrawList, VertexAttribute, VertexFormat, VertexSchema, ViewKind};
 use luminaire_graph::syntax::document::CompareDoc;
 use luminaire_passes::Gpu;
 

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{BindingTarget, Stages};
 use luminaire_graph::published::{
-    DrawBatch, MaterialBinding, PublishedSampler, PublishedTexture, PublishedWrap, TableKind, TableSchema, ViewKind, ViewRequest,
+    DrawBatch, MaterialBinding, PublishedMaterials, PublishedSampler, PublishedTexture, PublishedWrap, Table, TableKind, TableSchema,
+    ViewKind, ViewRequest,
 };
 use luminaire_passes::Gpu;
 

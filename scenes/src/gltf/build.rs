@@ -1,10 +1,10 @@
 //! From checked parts to an [`Asset`]: the default scene alone, everything numbered anew.
 //!
-//! Guarantees: whatever the scene does not use is left out (nodes, meshes, materials, images, lights, cameras), so that a broken image
-//! that nothing shows costs nothing. A mesh that several nodes use stands once, unless they morph or skin it differently.
-//! A skinned mesh hangs from a node of its own at the root, in the scene's space.
+//! Guarantees: whatever the scene does not use is left out (nodes, meshes, materials, images, lights, cameras, channels of
+//! animations), so that a broken image that nothing shows costs nothing. A mesh that several nodes use stands once, unless they
+//! morph or skin it differently. A skinned mesh hangs from a node of its own at the root, in the scene's space.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 
 use glam::Affine3A;
@@ -12,6 +12,7 @@ use glam::Affine3A;
 use super::Parts;
 use super::geometry::{self, Shape};
 use super::image;
+use super::keys;
 use super::material::{MaterialSource, textures_mut};
 use super::node;
 use super::report::Report;
@@ -61,7 +62,7 @@ impl<'p> Builder<'p> {
         let globals = node::global_transforms(&parts.nodes);
         let mut numbers: BTreeMap<usize, usize> = BTreeMap::new();
         let (mut lights, mut cameras) = (BTreeMap::new(), BTreeMap::new());
-        let mut skinned = Vec::new();
+        let (mut skinned, mut skins) = (Vec::new(), BTreeSet::new());
         for index in node::walk(&parts.nodes, &parts.scene) {
             let Some(source) = parts.nodes.get(index) else { continue };
             if !globals.get(index).is_some_and(node::is_usable) {
@@ -78,6 +79,7 @@ impl<'p> Builder<'p> {
                 name: source.name.clone(),
                 parent: source.parent.and_then(|parent| numbers.get(&parent).copied()),
                 local: source.local,
+                pose: source.pose,
                 meshes: Vec::new(),
                 light: source.light.and_then(|light| renumber(light, &parts.lights, &mut lights, &mut self.asset.lights)),
                 camera: source.camera.and_then(|camera| renumber(camera, &parts.cameras, &mut cameras, &mut self.asset.cameras)),
@@ -88,6 +90,7 @@ impl<'p> Builder<'p> {
                 let influenced =
                     |mesh: usize| parts.meshes.get(mesh).is_some_and(|mesh| mesh.primitives.iter().any(|p| !p.influences.is_empty()));
                 if source.skin.is_some() && source.mesh.is_some_and(influenced) {
+                    skins.extend(source.skin);
                     skinned.push((source.name.clone(), meshes));
                 } else {
                     node.meshes = meshes;
@@ -98,7 +101,32 @@ impl<'p> Builder<'p> {
         }
         for (name, meshes) in skinned.into_iter().filter(|(_, meshes)| !meshes.is_empty()) {
             let name = format!("{name} (skinned)");
-            self.asset.nodes.push(Node { name, parent: None, local: Affine3A::IDENTITY, meshes, light: None, camera: None });
+            self.asset.nodes.push(Node { name, parent: None, local: Affine3A::IDENTITY, pose: None, meshes, light: None, camera: None });
+        }
+        self.asset.animations = keys::build(&parts.animations, &numbers, &mut self.budget, self.report);
+        self.warn_of_moving_joints(&skins, &numbers);
+    }
+
+    /// Says so if an animation moves a joint, or a node above one.
+    fn warn_of_moving_joints(&self, skins: &BTreeSet<usize>, numbers: &BTreeMap<usize, usize>) {
+        let mut moving = vec![false; self.asset.nodes.len()];
+        for channel in self.asset.animations.iter().flat_map(|animation| &animation.channels) {
+            if let Some(moving) = moving.get_mut(channel.node) {
+                *moving = true;
+            }
+        }
+        for (index, node) in self.asset.nodes.iter().enumerate() {
+            // Parents come first.
+            let is_above = node.parent.and_then(|parent| moving.get(parent)) == Some(&true);
+            if let Some(moving) = moving.get_mut(index) {
+                *moving |= is_above;
+            }
+        }
+        let is_moving = |joint: &usize| numbers.get(joint).and_then(|number| moving.get(*number)) == Some(&true);
+        let skin = skins.iter().filter_map(|skin| self.parts.skins.get(*skin)).find(|skin| skin.joints.iter().any(is_moving));
+        if let Some(skin) = skin {
+            let problem = "an animation moves its joints, and skins are not played; the mesh stays in its pose at rest";
+            self.report.warning("gltf::animated-skin", &skin.place, problem, "");
         }
     }
 

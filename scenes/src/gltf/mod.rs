@@ -8,14 +8,14 @@
 //! container -> version -> buffers -> accessors -> textures, materials, meshes, skins, nodes, ... -> build
 //! ```
 //!
-//! Everything up to `build` reads structure: references, types, counts. `build` reads vertices and images, and only those that the
-//! default scene uses.
+//! Everything up to `build` reads structure: references, types, counts. `build` reads vertices, images and keys, and only those
+//! that the default scene uses.
 //!
 //! The JSON is read with `serde_json` and checked here, member by member. The types of the `gltf` crate stop at the first wrong
 //! member without its path, its validation refuses a valid empty scene, and its accessor readers trust what the file says.
 //!
-//! Downsides: the whole file is in memory while it is read; skins and morph targets are applied once, and animations
-//! are checked and dropped.
+//! Downsides: the whole file is in memory while it is read; skins and morph targets are applied once, and an animation of them
+//! is not played, which is a warning.
 
 mod accessor;
 mod animation;
@@ -27,6 +27,7 @@ mod element;
 mod geometry;
 mod image;
 mod json;
+mod keys;
 mod light;
 mod material;
 mod mesh;
@@ -46,6 +47,7 @@ use std::path::Path;
 use luminaire_graph::diagnostic::Diagnostic;
 
 use crate::asset::{Asset, Camera, Light};
+use animation::AnimationSource;
 use image::ImageSource;
 use json::Json;
 use material::MaterialSource;
@@ -82,6 +84,17 @@ pub fn load_within(path: &Path, root: &Path) -> Result<Loaded, Vec<Diagnostic>> 
     load_from(path, Some(root))
 }
 
+/// Loads a file that is already in memory, `.gltf` or `.glb`. It can name no files, only data URIs. `name` is for messages.
+///
+/// # Errors
+///
+/// As [`load`].
+pub fn load_bytes(name: &str, bytes: &[u8]) -> Result<Loaded, Vec<Diagnostic>> {
+    let report = Report::new(name.to_owned());
+    let asset = container::parse(bytes, &report).and_then(|container| read(container, &Folder::Nowhere, &report));
+    finish(asset, report)
+}
+
 fn load_from(path: &Path, root: Option<&Path>) -> Result<Loaded, Vec<Diagnostic>> {
     let report = Report::new(path.display().to_string());
     let asset = match Folder::of(path, root) {
@@ -91,6 +104,10 @@ fn load_from(path: &Path, root: Option<&Path>) -> Result<Loaded, Vec<Diagnostic>
             None
         }
     };
+    finish(asset, report)
+}
+
+fn finish(asset: Option<Asset>, report: Report) -> Result<Loaded, Vec<Diagnostic>> {
     let warnings = report.finish()?;
     Ok(Loaded { asset: asset.unwrap_or_default(), warnings })
 }
@@ -104,6 +121,7 @@ struct Parts<'a> {
     lights: Vec<Option<Light>>,
     cameras: Vec<Option<Camera>>,
     nodes: Vec<NodeSource>,
+    animations: Vec<AnimationSource<'a>>,
     /// Roots of the default scene.
     scene: Vec<usize>,
 }
@@ -128,7 +146,7 @@ fn read(container: container::Container, folder: &Folder, report: &Report) -> Op
     let counts = Counts { meshes: meshes.len(), skins: skins.len(), cameras: cameras.len(), lights: lights.len() };
     let nodes = node::read_nodes(&root, counts);
     let scene = node::default_scene(&root, &nodes);
-    animation::check(&root, &accessors, &nodes, &meshes);
+    let animations = animation::read_animations(&root, &accessors, &nodes, &meshes);
     if report.has_errors() {
         return None;
     }
@@ -136,6 +154,6 @@ fn read(container: container::Container, folder: &Folder, report: &Report) -> Op
     if scene.is_empty() {
         report.warning("gltf::empty-scene", "scenes", "the file has no scene, or its default scene has no nodes; nothing is drawn", "");
     }
-    let asset = build::build(&Parts { images, materials, meshes, skins, lights, cameras, nodes, scene }, folder, report);
+    let asset = build::build(&Parts { images, materials, meshes, skins, lights, cameras, nodes, animations, scene }, folder, report);
     (!report.has_errors()).then_some(asset)
 }

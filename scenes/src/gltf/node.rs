@@ -6,6 +6,7 @@
 use glam::{Affine3A, Mat4, Quat, Vec3};
 
 use super::json::Json;
+use crate::asset::Pose;
 
 /// A matrix entry beyond this is refused: the square of a product with the largest coordinate would leave 32-bit floats.
 pub(super) const LARGEST: f32 = 1e15;
@@ -21,6 +22,8 @@ pub(super) struct NodeSource {
     pub(super) parent: Option<usize>,
     pub(super) children: Vec<usize>,
     pub(super) local: Affine3A,
+    /// The parts of `local`, unless the file gives a matrix.
+    pub(super) pose: Option<Pose>,
     pub(super) mesh: Option<usize>,
     pub(super) skin: Option<usize>,
     pub(super) camera: Option<usize>,
@@ -50,12 +53,14 @@ fn read_node(json: &Json<'_>, index: usize, counts: Counts, nodes: usize) -> Nod
     let children = json.list("children").iter().filter_map(|child| child.as_index("nodes", nodes)).collect();
     let light = json.extension("KHR_lights_punctual").and_then(|extension| extension.required_index("light", "lights", counts.lights));
     let weights = json.has("weights").then(|| json.list("weights").iter().filter_map(Json::as_number).collect());
+    let (local, pose) = read_transform(json);
     NodeSource {
         place: json.place().to_owned(),
         name: json.name_or("node", index),
         parent: None,
         children,
-        local: read_transform(json),
+        local,
+        pose,
         mesh: json.index("mesh", "meshes", counts.meshes),
         skin: json.index("skin", "skins", counts.skins),
         camera: json.index("camera", "cameras", counts.cameras),
@@ -64,28 +69,36 @@ fn read_node(json: &Json<'_>, index: usize, counts: Counts, nodes: usize) -> Nod
     }
 }
 
-fn read_transform(json: &Json<'_>) -> Affine3A {
+fn read_transform(json: &Json<'_>) -> (Affine3A, Option<Pose>) {
     if json.has("matrix") {
-        let Some(columns) = json.numbers::<16>("matrix") else { return Affine3A::IDENTITY };
-        let matrix = Mat4::from_cols_array(&columns);
-        if !matrix.row(3).abs_diff_eq(glam::Vec4::W, AFFINE_TOLERANCE) {
-            json.error_at("matrix", "gltf::matrix", format_args!("its last row must be 0 0 0 1, found {}", matrix.row(3)));
-            return Affine3A::IDENTITY;
-        }
-        return Affine3A::from_mat4(matrix);
+        return (read_matrix(json).unwrap_or(Affine3A::IDENTITY), None);
     }
     let translation = json.numbers("translation").map_or(Vec3::ZERO, Vec3::from_array);
     let scale = json.numbers("scale").map_or(Vec3::ONE, Vec3::from_array);
-    let rotation = json.numbers("rotation").map_or(Quat::IDENTITY, |[x, y, z, w]| {
-        // In 64 bits, so that a long quaternion does not overflow.
-        let quaternion = glam::DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into());
-        if quaternion.length() > f64::from(f32::MIN_POSITIVE) {
-            return quaternion.normalize().as_quat();
-        }
-        json.warning_at("rotation", "gltf::rotation", "a quaternion of length 0 is no rotation, and taken as none");
-        Quat::IDENTITY
+    let rotation = json.numbers("rotation").map_or(Quat::IDENTITY, |xyzw| {
+        unit_quaternion(xyzw).unwrap_or_else(|| {
+            json.warning_at("rotation", "gltf::rotation", "a quaternion of length 0 is no rotation, and taken as none");
+            Quat::IDENTITY
+        })
     });
-    Affine3A::from_scale_rotation_translation(scale, rotation, translation)
+    let pose = Pose { translation, rotation, scale };
+    (pose.matrix(), Some(pose))
+}
+
+fn read_matrix(json: &Json<'_>) -> Option<Affine3A> {
+    let matrix = Mat4::from_cols_array(&json.numbers::<16>("matrix")?);
+    if !matrix.row(3).abs_diff_eq(glam::Vec4::W, AFFINE_TOLERANCE) {
+        json.error_at("matrix", "gltf::matrix", format_args!("its last row must be 0 0 0 1, found {}", matrix.row(3)));
+        return None;
+    }
+    Some(Affine3A::from_mat4(matrix))
+}
+
+/// The quaternion at unit length; `None` if it has no length.
+pub(super) fn unit_quaternion([x, y, z, w]: [f32; 4]) -> Option<Quat> {
+    // In 64 bits, so that a long quaternion does not overflow.
+    let quaternion = glam::DQuat::from_xyzw(x.into(), y.into(), z.into(), w.into());
+    (quaternion.length() > f64::from(f32::MIN_POSITIVE)).then(|| quaternion.normalize().as_quat())
 }
 
 /// Fills in the parents, and reports whatever is not a forest.

@@ -14,8 +14,10 @@ use super::report::Report;
 
 /// A checked skin.
 pub(super) struct SkinSource<'a> {
-    place: String,
-    joints: Vec<usize>,
+    /// The JSON path, for messages.
+    pub(super) place: String,
+    /// The file's indices of nodes.
+    pub(super) joints: Vec<usize>,
     inverse_bind: Option<&'a Accessor<'a>>,
 }
 

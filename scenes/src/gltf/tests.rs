@@ -1,13 +1,11 @@
 //! Small files in memory, one for each rule that the loader follows.
 
-use std::path::Path;
-
 use base64::Engine;
-use glam::Vec3;
+use glam::{Vec3, Vec4};
 use serde_json::{Value, json};
 
 use super::*;
-use crate::asset::{LightKind, Mesh};
+use crate::asset::{Interpolation, LightKind, Mesh, Property};
 
 /// A file under construction.
 struct File {
@@ -95,11 +93,7 @@ impl File {
 }
 
 fn load_text(text: &[u8]) -> Result<Loaded, Vec<Diagnostic>> {
-    let report = Report::new("test.gltf");
-    let folder = Folder::of(Path::new("test.gltf"), None).unwrap();
-    let asset = container::parse(text, &report).and_then(|container| read(container, &folder, &report));
-    let warnings = report.finish()?;
-    Ok(Loaded { asset: asset.unwrap(), warnings })
+    load_bytes("test.gltf", text)
 }
 
 /// Four corners of a square in the plane z = 0.
@@ -337,4 +331,65 @@ fn nodes_may_morph_one_mesh_differently() {
         .asset;
     let heights: Vec<f32> = asset.nodes.iter().map(|node| asset.meshes[node.meshes[0]].vertices[0].position[2]).collect();
     assert_eq!((heights, asset.meshes.len()), (vec![0.25, 0.5, 0.25], 2));
+}
+
+/// Node, path, interpolation, times and values.
+type ChannelOf<'a> = (usize, &'a str, &'a str, &'a [f32], &'a [f32]);
+
+/// Nodes with an animation of these channels: the first two are in the scene, and the second has a matrix.
+fn animated(channels: &[ChannelOf<'_>]) -> File {
+    let mut file = square().indices(&[0, 1, 2]).set("/nodes", json!([{"mesh": 0}, {"matrix": glam::Mat4::IDENTITY.to_cols_array()}, {}]));
+    let (mut samplers, mut list) = (Vec::new(), Vec::new());
+    for (node, path, interpolation, times, values) in channels {
+        let kind = if *path == "rotation" { "VEC4" } else { "VEC3" };
+        let (input, output) = (file.floats("SCALAR", times), file.floats(kind, values));
+        list.push(json!({"sampler": samplers.len(), "target": {"node": node, "path": path}}));
+        samplers.push(json!({"input": input, "output": output, "interpolation": interpolation}));
+    }
+    file.json["animations"] = json!([{"channels": list, "samplers": samplers}]);
+    file.set("/scenes", json!([{"nodes": [0, 1]}]))
+}
+
+#[test]
+fn animations_are_kept_for_the_nodes_of_the_scene() {
+    let turn = [0.0, 0.0, 0.0, 2.0, 0.0, 0.0, 3.0, 3.0];
+    let loaded = animated(&[
+        (0, "rotation", "LINEAR", &[0.5, 2.5], &turn),
+        (0, "scale", "CUBICSPLINE", &[1.0], &[0.0, 0.0, 0.0, 4.0, 5.0, 6.0, 1.0, 1.0, 1.0]),
+        (2, "translation", "STEP", &[9.0], &[1.0; 3]),
+    ]);
+    let Loaded { asset, warnings } = loaded.load().unwrap();
+    assert!(warnings.is_empty(), "{warnings:?}");
+    let [animation] = asset.animations.as_slice() else { panic!("one animation") };
+    assert_eq!((animation.name.as_str(), animation.duration), ("animation 0", 9.0), "as long as the file has it");
+    let [rotation, scale] = animation.channels.as_slice() else { panic!("node 2 is not in the scene") };
+    assert_eq!((rotation.node, rotation.property, rotation.interpolation), (0, Property::Rotation, Interpolation::Linear));
+    assert_eq!((rotation.times.as_ref(), rotation.values[0]), ([0.5, 2.5].as_slice(), Vec4::W));
+    assert!(rotation.values[1].abs_diff_eq(Vec4::new(0.0, 0.0, 0.5_f32.sqrt(), 0.5_f32.sqrt()), 1e-6), "unit length");
+    assert_eq!((scale.interpolation, scale.values[1]), (Interpolation::CubicSpline, Vec4::new(4.0, 5.0, 6.0, 0.0)));
+}
+
+#[test]
+fn channels_that_cannot_be_played_are_warnings() {
+    let still = [0.0; 6];
+    let of = |channel: ChannelOf<'_>| {
+        let loaded = animated(&[channel]).load().unwrap();
+        let codes: Vec<_> = loaded.warnings.iter().map(|warning| warning.code).collect();
+        (codes, loaded.asset.animations.into_iter().next().unwrap())
+    };
+    let (codes, animation) = of((1, "translation", "LINEAR", &[0.0, 3.0], &still));
+    assert_eq!((codes.as_slice(), animation.channels.len(), animation.duration), (["gltf::animated-matrix"].as_slice(), 0, 3.0));
+    let (codes, animation) = of((0, "scale", "STEP", &[0.0, 1.0], &[0.0, f32::NAN, 0.0, 0.0, 0.0, 0.0]));
+    assert_eq!((codes.as_slice(), animation.channels.len()), (["gltf::animation-values"].as_slice(), 0));
+    let (codes, animation) = of((0, "scale", "STEP", &[f32::NAN, f32::INFINITY], &still));
+    assert_eq!((codes.as_slice(), animation.channels.len()), (["gltf::animation-times", "gltf::animation-values"].as_slice(), 0));
+    let keys = [1.0, 0.5, 1.0, f32::NAN, 4.0];
+    let (codes, animation) = of((0, "scale", "STEP", &keys, &[[1.0; 3], [2.0; 3], [3.0; 3], [4.0; 3], [5.0; 3]].concat()));
+    assert_eq!((codes.as_slice(), animation.duration), (["gltf::animation-times"].as_slice(), 4.0));
+    assert_eq!(animation.channels[0].times.as_ref(), [1.0, 1.0, 4.0]);
+    assert_eq!(animation.channels[0].values.iter().map(|value| value.x).collect::<Vec<_>>(), [1.0, 3.0, 5.0]);
+    let (codes, animation) = of((0, "rotation", "LINEAR", &[0.0], &[0.0; 4]));
+    assert_eq!((codes.as_slice(), animation.channels[0].values[0]), (["gltf::rotation"].as_slice(), Vec4::W));
+    let twice = animated(&[(0, "scale", "STEP", &[0.0], &[1.0; 3]), (0, "scale", "STEP", &[0.0], &[2.0; 3])]).load().unwrap();
+    assert_eq!((twice.warnings[0].code, twice.asset.animations[0].channels[0].values[0].x), ("gltf::animated-twice", 1.0));
 }

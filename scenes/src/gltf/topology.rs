@@ -11,18 +11,21 @@ const MOST_TRIANGLES: usize = 1 << 24;
 const MOST_VERTICES: usize = 1 << 24;
 /// Elements that morph targets and skins may read: vertices times targets, and times sets of joints.
 const MOST_DEFORMED: usize = 1 << 28;
+/// Key times and values that all animations of a file together may have.
+const MOST_KEYS: usize = 1 << 24;
 
 /// What is left of the limits.
 pub(super) struct Budget {
     triangles: usize,
     vertices: usize,
     deformed: usize,
+    keys: usize,
 }
 
 impl Budget {
     /// The limits for one file.
     pub(super) fn new() -> Budget {
-        Budget { triangles: MOST_TRIANGLES, vertices: MOST_VERTICES, deformed: MOST_DEFORMED }
+        Budget { triangles: MOST_TRIANGLES, vertices: MOST_VERTICES, deformed: MOST_DEFORMED, keys: MOST_KEYS }
     }
 
     /// Takes triangles, or reports that there are too many.
@@ -33,6 +36,11 @@ impl Budget {
     /// Takes vertices, or reports that there are too many.
     pub(super) fn take_vertices(&mut self, count: usize, place: &str, report: &Report) -> Option<()> {
         take(&mut self.vertices, count, MOST_VERTICES, "vertices", place, report)
+    }
+
+    /// Takes key times or values, or reports that there are too many.
+    pub(super) fn take_keys(&mut self, count: usize, place: &str, report: &Report) -> Option<()> {
+        take(&mut self.keys, count, MOST_KEYS, "animation keys", place, report)
     }
 
     /// Takes elements of morph targets and skins, or reports that there are too many.
@@ -49,7 +57,7 @@ fn take(left: &mut usize, count: usize, most: usize, what: &str, place: &str, re
         }
         None => {
             let problem = format!("with {count} more {what} the file has more than {most}");
-            report.error("gltf::too-large", place, problem, "split the file, or simplify its meshes");
+            report.error("gltf::too-large", place, problem, "split the file, or simplify what it holds");
             None
         }
     }

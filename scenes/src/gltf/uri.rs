@@ -17,11 +17,16 @@ const BASE64: GeneralPurpose =
     GeneralPurpose::new(&alphabet::STANDARD, GeneralPurposeConfig::new().with_decode_padding_mode(DecodePaddingMode::Indifferent));
 
 /// The folders that URIs are resolved against.
-pub(super) struct Folder {
-    /// Where the file is: URIs are relative to it.
-    base: PathBuf,
-    /// Canonical; nothing outside of it is read.
-    root: PathBuf,
+pub(super) enum Folder {
+    /// The file is in memory, and names no others.
+    Nowhere,
+    /// The file is on disk.
+    At {
+        /// Where the file is: URIs are relative to it.
+        base: PathBuf,
+        /// Canonical; nothing outside of it is read.
+        root: PathBuf,
+    },
 }
 
 impl Folder {
@@ -37,7 +42,7 @@ impl Folder {
         if !base.starts_with(&root) {
             return Err(format!("lies outside of the asset folder {}", root.display()));
         }
-        Ok(Folder { base, root })
+        Ok(Folder::At { base, root })
     }
 
     /// The bytes behind a URI, at most `limit` of them.
@@ -56,6 +61,9 @@ impl Folder {
     }
 
     fn resolve(&self, uri: &str) -> Result<PathBuf, String> {
+        let Folder::At { base, root } = self else {
+            return Err(format!("`{}` names a file, and only data URIs are read where there is no folder", clip(uri)));
+        };
         let outside = || format!("`{}` leaves the asset folder", clip(uri));
         if let Some(scheme) = scheme(uri) {
             return Err(format!("`{}` has the scheme `{scheme}`; only files and data URIs are read", clip(uri)));
@@ -69,13 +77,13 @@ impl Folder {
         if decoded.starts_with(['/', '\\']) {
             return Err(outside());
         }
-        let mut path = self.base.clone();
+        let mut path = base.clone();
         for component in Path::new(decoded.as_ref()).components() {
             match component {
                 Component::Normal(name) => path.push(name),
                 Component::CurDir => {}
                 Component::ParentDir => {
-                    if path == self.root || !path.pop() {
+                    if path == *root || !path.pop() {
                         return Err(outside());
                     }
                 }
@@ -84,7 +92,7 @@ impl Folder {
         }
         // The text is fine; a symbolic link could still lead elsewhere.
         let real = path.canonicalize().map_err(|error| format!("the file `{}` can't be read: {error}", clip(uri)))?;
-        if real.starts_with(&self.root) { Ok(real) } else { Err(outside()) }
+        if real.starts_with(root) { Ok(real) } else { Err(outside()) }
     }
 }
 

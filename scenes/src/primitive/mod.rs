@@ -1,4 +1,4 @@
-//! Meshes made by formula: box, sphere and plane.
+//! Meshes made by formula: box, sphere, plane, cylinder, cone, capsule and torus.
 //!
 //! Guarantees: triangles are counter-clockwise seen from outside, normals and tangents have unit length, texture coordinates run
 //! from the top left of the image, and `tangent` points along growing u. The bitangent, `cross(normal, tangent) * w`, follows
@@ -6,10 +6,12 @@
 
 mod cuboid;
 mod plane;
+mod revolve;
 mod sphere;
 
 pub use cuboid::cuboid;
-pub use plane::plane;
+pub use plane::{panel, plane};
+pub use revolve::{capsule, cone, cylinder, torus};
 pub use sphere::{MAX_SECTORS, sphere};
 
 use glam::{Vec2, Vec3};
@@ -58,12 +60,17 @@ mod tests {
         (b - a).cross(c - a) * 0.5
     }
 
-    fn all() -> [Mesh; 4] {
+    fn all() -> [Mesh; 9] {
         [
             cuboid("box", Vec3::new(1.0, 2.0, 3.0), 0),
             sphere("ball", 1.5, 16, 9, 0),
             plane("floor", Vec2::new(2.0, 4.0), 0),
             sphere("few", 1.0, 3, 2, 0),
+            panel("panel", Vec2::new(2.0, 4.0), 0),
+            cylinder("cylinder", 0.5, 2.0, 12, 0),
+            cone("cone", 0.5, 2.0, 12, 0),
+            capsule("capsule", 0.5, 1.0, 12, 7, 0),
+            torus("torus", 1.0, 0.25, 12, 8, 0),
         ]
     }
 
@@ -110,7 +117,7 @@ mod tests {
     #[test]
     fn areas_and_extents_are_right() {
         let area = |mesh: &Mesh| corners(mesh).map(|triangle| area_normal(triangle).length()).sum::<f32>();
-        let [cube, _, floor, _] = all();
+        let [cube, _, floor, ..] = all();
         assert_eq!(cube.vertices.len(), 24);
         assert!((area(&cube) - 22.0).abs() < 1e-4);
         assert!((area(&floor) - 8.0).abs() < 1e-5 && floor.vertices.iter().all(|vertex| vertex.position[1] == 0.0));
@@ -123,8 +130,37 @@ mod tests {
     }
 
     #[test]
+    fn surfaces_of_revolution_have_their_volumes() {
+        use std::f32::consts::PI;
+        // The divergence theorem: a third of the sum of corner . area normal, each triangle.
+        let volume =
+            |mesh: &Mesh| corners(mesh).map(|triangle| Vec3::from(triangle[0].position).dot(area_normal(triangle)) / 3.0).sum::<f32>();
+        let cases = [
+            (cylinder("cylinder", 0.5, 2.0, 256, 0), PI * 0.25 * 2.0),
+            (cone("cone", 0.5, 2.0, 256, 0), PI * 0.25 * 2.0 / 3.0),
+            (capsule("capsule", 0.5, 1.0, 256, 128, 0), PI * 0.25 + PI / 6.0),
+            (torus("torus", 1.0, 0.25, 256, 128, 0), 2.0 * PI * PI * 0.0625),
+        ];
+        for (mesh, expected) in cases {
+            assert!((volume(&mesh) / expected - 1.0).abs() < 2e-3, "{}: {} and not {expected}", mesh.name, volume(&mesh));
+            let sum: Vec3 = corners(&mesh).map(area_normal).sum();
+            assert!(sum.length() < 1e-4, "{} is open", mesh.name);
+        }
+        assert!(panel("panel", Vec2::ONE, 0).vertices.iter().all(|vertex| vertex.normal == [0.0, 0.0, -1.0]));
+    }
+
+    #[test]
     fn no_size_gives_nan() {
-        for mesh in [cuboid("box", Vec3::ZERO, 0), sphere("ball", 0.0, 0, 0, 0), plane("floor", Vec2::ZERO, 0)] {
+        let meshes = [
+            cuboid("box", Vec3::ZERO, 0),
+            sphere("ball", 0.0, 0, 0, 0),
+            plane("floor", Vec2::ZERO, 0),
+            cylinder("cylinder", 0.0, 0.0, 0, 0),
+            cone("cone", 0.0, 0.0, 0, 0),
+            capsule("capsule", 0.0, 0.0, 0, 0, 0),
+            torus("torus", 0.0, 0.0, 0, 0, 0),
+        ];
+        for mesh in meshes {
             assert!(
                 mesh.vertices.iter().all(|vertex| Vec3::from(vertex.normal).is_finite() && vertex.tangent.iter().all(|x| x.is_finite()))
             );

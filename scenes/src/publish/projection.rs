@@ -6,7 +6,7 @@ use glam::{DMat4, DVec3, DVec4};
 
 use super::layout::{CameraTable, Columns, ViewTable};
 use crate::asset::Projection;
-use crate::world::CameraPose;
+use crate::world::{CameraPose, Exposure};
 
 /// A camera with its matrices.
 #[derive(Debug, Clone, Copy)]
@@ -78,7 +78,7 @@ impl CameraView {
             view_from_world: columns(view_from_world),
             world_from_view: columns(world_from_view),
             position: vector(self.pose.position),
-            exposure: exposure(self.pose.ev100),
+            exposure: factor(self.pose.exposure),
             forward: vector(self.forward()),
             near: self.near as f32,
         }
@@ -96,10 +96,14 @@ impl CameraView {
     }
 }
 
-/// Factor on radiance for an exposure value at ISO 100: the luminance that saturates is `1.2 * 2^EV100` nits (Lagarde and
-/// de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014). Without a value, 1.
-pub(super) fn exposure(ev100: Option<f32>) -> f32 {
-    ev100.filter(|value| value.is_finite()).map_or(1.0, |value| (1.0 / (1.2 * f64::from(value.clamp(-60.0, 60.0)).exp2())) as f32)
+/// Factor on radiance. For an exposure value at ISO 100 the luminance that saturates is `1.2 * 2^EV100` nits (Lagarde and
+/// de Rousiers, "Moving Frostbite to Physically Based Rendering", 2014).
+pub(super) fn factor(exposure: Exposure) -> f32 {
+    match exposure {
+        Exposure::Ev100(value) if value.is_finite() => (1.0 / (1.2 * f64::from(value.clamp(-60.0, 60.0)).exp2())) as f32,
+        Exposure::Factor(factor) if factor.is_finite() => factor.max(0.0),
+        Exposure::Unchanged | Exposure::Ev100(_) | Exposure::Factor(_) => 1.0,
+    }
 }
 
 /// The inverse of a rigid frame.
@@ -140,7 +144,7 @@ mod tests {
 
     fn pose(projection: Projection) -> CameraPose {
         let (right, up, back) = look_at(DVec3::new(0.3, -0.4, -1.0));
-        CameraPose { position: DVec3::new(1.0, 2.0, 3.0), right, up, back, projection, ev100: None }
+        CameraPose { position: DVec3::new(1.0, 2.0, 3.0), right, up, back, projection, exposure: Exposure::Unchanged }
     }
 
     fn both() -> [CameraView; 2] {
@@ -201,9 +205,10 @@ mod tests {
     }
 
     #[test]
-    fn exposure_follows_ev100() {
-        assert_eq!(exposure(None), 1.0);
-        assert!((exposure(Some(0.0)) - 1.0 / 1.2).abs() < 1e-6);
-        assert!((exposure(Some(15.0)) * 1.2 * 32768.0 - 1.0).abs() < 1e-5);
+    fn exposure_follows_ev100_or_the_hand() {
+        assert_eq!(factor(Exposure::Unchanged), 1.0);
+        assert!((factor(Exposure::Ev100(0.0)) - 1.0 / 1.2).abs() < 1e-6);
+        assert!((factor(Exposure::Ev100(15.0)) * 1.2 * 32768.0 - 1.0).abs() < 1e-5);
+        assert_eq!([2.5, 0.0, -1.0, f32::NAN].map(|by_hand| factor(Exposure::Factor(by_hand))), [2.5, 0.0, 0.0, 1.0]);
     }
 }

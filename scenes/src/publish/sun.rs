@@ -115,12 +115,12 @@ mod tests {
 
     use super::*;
     use crate::asset::Projection;
-    use crate::world::CameraPose;
+    use crate::world::{CameraPose, Exposure};
 
     fn camera(position: DVec3, forward: DVec3) -> CameraView {
         let (right, up, back) = look_at(forward);
         let projection = Projection::Perspective { yfov: 0.9, near: 0.1, far: None };
-        CameraView::new(CameraPose { position, right, up, back, projection, ev100: None }, 1.5)
+        CameraView::new(CameraPose { position, right, up, back, projection, exposure: Exposure::Unchanged }, 1.5)
     }
 
     fn large() -> Aabb {

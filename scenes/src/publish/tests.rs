@@ -10,7 +10,7 @@ use super::*;
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
 use crate::world::{
-    Camera, ChildOf, DirectionalLight, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world, set_translation,
+    Camera, ChildOf, DirectionalLight, Exposure, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world, set_translation,
 };
 
 const CAMERA_VIEW: ViewRequest = ViewRequest { kind: ViewKind::Camera, width: 64, height: 48 };
@@ -29,7 +29,10 @@ fn stage() -> World {
     world.resource_mut::<Materials>().0 = vec![Material::default(), Material::default(), masked, blended];
     world.resource_mut::<Meshes>().0 = vec![cuboid("box", Vec3::ONE, 0), sphere("ball", 0.5, 8, 4, 0)];
     let projection = Projection::Perspective { yfov: 0.8, near: 0.1, far: None };
-    world.spawn((Transform(Affine3A::from_translation(Vec3::Z * 5.0)), Camera { name: "main".to_owned(), projection, ev100: None }));
+    world.spawn((
+        Transform(Affine3A::from_translation(Vec3::Z * 5.0)),
+        Camera { name: "main".to_owned(), projection, exposure: Exposure::Unchanged },
+    ));
     let down = Affine3A::from_rotation_x(-std::f32::consts::FRAC_PI_2);
     world.spawn((Transform(down), DirectionalLight { color: Vec3::ONE, illuminance: 100_000.0 }));
     let lamp = LocalLight { color: Vec3::ONE, intensity: 10.0, range: None, cone: None };

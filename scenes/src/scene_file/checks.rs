@@ -3,13 +3,22 @@
 use std::ops::RangeInclusive;
 
 use glam::{Affine3A, EulerRot, Quat, Vec3};
-use luminaire_graph::diagnostic::Diagnostic;
+use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 use luminaire_graph::source::Span;
+use luminaire_graph::syntax::spanned::Spanned;
 
 use super::document::{Number, Vector};
 
 /// Farthest coordinate and largest size, metres: a scene file with more is a slip.
 pub(super) const FAR: f32 = 1e6;
+/// Brightest light or emission, in its unit: ten billion is beyond the sun's disc seen from the ground.
+pub(super) const BRIGHT: f32 = 1e10;
+/// Largest factor of a light's color.
+pub(super) const COLORFUL: f32 = 1e3;
+/// Latest moment and longest change, seconds: more than a week.
+pub(super) const LATE: f64 = 1e6;
+/// Problems that go through all names for a hint; what comes later is a consequence, or a text of a program.
+const HELPFUL: usize = 20;
 /// Smallest size, metres.
 pub(super) const SMALL: f32 = 1e-6;
 
@@ -20,6 +29,22 @@ pub(super) struct Problems(pub(super) Vec<Diagnostic>);
 impl Problems {
     pub(super) fn add(&mut self, diagnostic: Diagnostic) {
         self.0.push(diagnostic);
+    }
+
+    /// Adds that a name is unknown, with those that there are; beyond the first few it is the fact alone that counts.
+    pub(super) fn add_unknown<'a, Known: Iterator<Item = &'a str>>(
+        &mut self,
+        problem: Diagnostic,
+        what: &str,
+        wrong: Option<&str>,
+        known: impl Fn() -> Known,
+    ) {
+        self.0.push(if self.0.len() < HELPFUL {
+            let hint = wrong.and_then(|wrong| did_you_mean(wrong, known()));
+            problem.note(format!("{what}: {}", list_names(known()))).maybe_hint(hint)
+        } else {
+            problem
+        });
     }
 
     fn out_of_range(&mut self, what: &str, shown: &str, span: Span, range: &RangeInclusive<f32>) {
@@ -69,6 +94,22 @@ impl Problems {
         self.vector(what, value, default, 0.0..=limit)
     }
 
+    /// A moment or a span of time; 0 where it is left out.
+    pub(super) fn seconds(&mut self, what: &str, value: Option<&Spanned<f64>>) -> f64 {
+        let Some(seconds) = value else { return 0.0 };
+        if (0.0..=LATE).contains(&seconds.value) {
+            return seconds.value;
+        }
+        let message = format!("{what} is {}", seconds.value);
+        self.add(Diagnostic::error("scene::bad-time", message).at(seconds.span, format!("must lie between 0 and {LATE} seconds")));
+        0.0
+    }
+
+    /// The rotation about fixed x, y and z by degrees.
+    pub(super) fn angles(&mut self, what: &str, value: Option<&Vector>) -> Vec3 {
+        self.vector(what, value, Vec3::ZERO, -36000.0..=36000.0).map(f32::to_radians)
+    }
+
     /// Scale, then rotation about fixed x, y and z, then translation.
     pub(super) fn placement(
         &mut self,
@@ -78,11 +119,15 @@ impl Problems {
         scale: Option<&Vector>,
     ) -> Affine3A {
         let translation = self.vector(&format!("`translation` of {of}"), translation, Vec3::ZERO, -FAR..=FAR);
-        let angles = self.vector(&format!("`rotation` of {of}"), rotation, Vec3::ZERO, -36000.0..=36000.0);
+        let rotation = rotation_of(self.angles(&format!("`rotation` of {of}"), rotation));
         let scale = self.vector(&format!("`scale` of {of}"), scale, Vec3::ONE, -FAR..=FAR);
-        let [x, y, z] = angles.to_array().map(f32::to_radians);
-        Affine3A::from_scale_rotation_translation(scale, Quat::from_euler(EulerRot::ZYX, z, y, x), translation)
+        Affine3A::from_scale_rotation_translation(scale, rotation, translation)
     }
+}
+
+/// The rotation about fixed x, then y, then z, by radians.
+pub(crate) fn rotation_of(angles: Vec3) -> Quat {
+    Quat::from_euler(EulerRot::ZYX, angles.z, angles.y, angles.x)
 }
 
 #[cfg(test)]

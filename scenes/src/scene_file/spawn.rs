@@ -1,53 +1,126 @@
 //! From checked parts to entities.
 
+use std::ops::Range;
+
 use bevy_ecs::prelude::{Entity, World};
-use glam::Affine3A;
+use glam::{Affine3A, UVec3};
 
-use super::checked::{Checked, Light, Shape};
-use crate::asset::Mesh;
-use crate::primitive;
-use crate::world::{Environment, Materials, MeshInstance, Meshes, Name, Transform, assign_slots};
+use super::assets::UsedFile;
+use super::check::{Controller, Declaration, Kind, Play, Repeat};
+use crate::timeline::NodeRef;
+use crate::world::{AnimationPlayer, ChildOf, MeshInstance, Name, Transform, assign_slots, spawn_stored};
 
-/// Spawns cameras, lights and objects, in this order. Objects of one shape share their mesh.
-pub(super) fn spawn(world: &mut World, checked: &Checked) {
-    world.insert_resource(Environment { sky_radiance: checked.sky_radiance, ..Environment::default() });
-    for (name, camera, transform) in &checked.cameras {
-        world.spawn((Name::new(name.clone()), Transform(*transform), camera.clone()));
+/// The entities of a declaration.
+#[derive(Debug)]
+pub(crate) struct Spawned {
+    pub(crate) root: Entity,
+    /// Per node of a glTF file.
+    pub(crate) inside: Vec<Entity>,
+}
+
+/// Spawns some declarations, in their order, and puts them below their parents. Meshes and materials are in the world.
+pub(crate) fn spawn(
+    world: &mut World,
+    declarations: &[Declaration],
+    range: Range<usize>,
+    parents: &[Option<NodeRef>],
+    files: &[UsedFile],
+    spawned: &mut [Option<Spawned>],
+) {
+    for index in range.clone() {
+        if let (Some(declaration), Some(slot)) = (declarations.get(index), spawned.get_mut(index)) {
+            *slot = Some(one(world, declaration, files));
+        }
     }
-    for (name, light, transform) in &checked.lights {
-        let mut entity = world.spawn((Name::new(name.clone()), Transform(*transform)));
-        match light {
-            Light::Directional(light) => entity.insert(*light),
-            Light::Local(light) => entity.insert(*light),
+    for index in range {
+        let Some(parent) = parents.get(index).copied().flatten() else { continue };
+        let entity = |node: NodeRef| {
+            let spawned = spawned.get(node.declaration)?.as_ref()?;
+            node.inside.map_or(Some(spawned.root), |inner| spawned.inside.get(inner).copied())
         };
-    }
-    let materials = &mut world.get_resource_or_init::<Materials>().0;
-    let first_material = materials.len();
-    materials.extend(checked.materials.iter().cloned());
-    let mut shapes: Vec<(Shape, usize)> = Vec::new();
-    for (name, object, transform) in &checked.objects {
-        let material = first_material + object.material;
-        let known = shapes.iter().find(|(shape, _)| *shape == object.shape).map(|(_, mesh)| *mesh);
-        let mesh = known.unwrap_or_else(|| {
-            let meshes = &mut world.get_resource_or_init::<Meshes>().0;
-            meshes.push(build(name, object.shape, material));
-            shapes.push((object.shape, meshes.len() - 1));
-            meshes.len() - 1
-        });
-        world.spawn((Name::new(name.clone()), Transform(*transform), MeshInstance { mesh, material }));
+        if let (Some(parent), Some(child)) = (entity(parent), entity(NodeRef::of(index)))
+            && let Ok(mut child) = world.get_entity_mut(child)
+        {
+            child.insert(ChildOf(parent));
+        }
     }
     assign_slots(world);
 }
 
-/// An entity that places what is spawned below it.
-pub(super) fn group(world: &mut World, name: &str, transform: Affine3A) -> Entity {
-    world.spawn((Name::new(name.to_owned()), Transform(transform))).id()
+fn one(world: &mut World, declaration: &Declaration, files: &[UsedFile]) -> Spawned {
+    let mut entity = world.spawn((Name::new(declaration.name.value.clone()), Transform(declaration.local)));
+    let root = entity.id();
+    let mut inside = Vec::new();
+    match &declaration.kind {
+        Kind::Group => {}
+        Kind::Camera { camera, path, controller } => {
+            entity.insert(camera.clone());
+            if let Some(path) = path {
+                entity.insert(path.clone());
+            }
+            match controller {
+                Some(Controller::Fly(fly)) => {
+                    entity.insert(*fly);
+                }
+                Some(Controller::Orbit(orbit)) => {
+                    entity.insert(*orbit);
+                }
+                None => {}
+            }
+        }
+        Kind::Directional(light) => {
+            entity.insert(*light);
+        }
+        Kind::Local(light) => {
+            entity.insert(*light);
+        }
+        Kind::Rectangle { light, mesh, material } => {
+            entity.insert((*light, MeshInstance { mesh: *mesh, material: *material }));
+        }
+        Kind::Object { mesh, material, repeat: None } => {
+            entity.insert(MeshInstance { mesh: *mesh, material: *material });
+        }
+        Kind::Object { mesh, material, repeat: Some(repeat) } => copies(world, root, *mesh, *material, repeat),
+        Kind::File(used) => {
+            if let Some(UsedFile { asset, play }) = files.get(*used) {
+                inside = spawn_stored(world, asset, Some(root));
+                if let Some(play) = play {
+                    play_clip(world, root, play);
+                }
+            }
+        }
+        Kind::ProbeVolume(volume) => {
+            entity.insert(*volume);
+        }
+        Kind::ReflectionProbe(probe) => {
+            entity.insert(*probe);
+        }
+        Kind::Volume(volume) => {
+            entity.insert(*volume);
+        }
+    }
+    Spawned { root, inside }
 }
 
-fn build(name: &str, shape: Shape, material: usize) -> Mesh {
-    match shape {
-        Shape::Box(size) => primitive::cuboid(name, size, material),
-        Shape::Sphere { radius, sectors, stacks } => primitive::sphere(name, radius, sectors, stacks, material),
-        Shape::Plane(size) => primitive::plane(name, size, material),
+/// Plays a clip of the file that was spawned below the entity, and no other.
+pub(crate) fn play_clip(world: &mut World, root: Entity, play: &Play) {
+    if let Some(mut player) = world.get_mut::<AnimationPlayer>(root) {
+        player.playing = vec![play.clip];
+        (player.speed, player.start, player.repeat) = (play.speed, play.start, play.repeat);
+    }
+}
+
+/// Copies on a grid around the parent, x running fastest. They have no names.
+fn copies(world: &mut World, parent: Entity, mesh: usize, material: usize, repeat: &Repeat) {
+    let middle = (repeat.count.as_vec3() - 1.0) * 0.5;
+    for z in 0..repeat.count.z {
+        for y in 0..repeat.count.y {
+            for x in 0..repeat.count.x {
+                let index = UVec3::new(x, y, z);
+                let material = repeat.materials.get((x + y + z) as usize % repeat.materials.len().max(1)).copied().unwrap_or(material);
+                let local = Affine3A::from_translation((index.as_vec3() - middle) * repeat.spacing);
+                world.spawn((Transform(local), MeshInstance { mesh, material }, ChildOf(parent)));
+            }
+        }
     }
 }

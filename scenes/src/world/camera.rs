@@ -7,7 +7,7 @@ use bevy_ecs::prelude::{Entity, Resource, World};
 use glam::{Affine3A, DVec3, Mat3A, Vec3};
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, list_names};
 
-use super::{Aabb, Camera, CameraSlot, GlobalTransform, Name, Triangles, interior_camera};
+use super::{Aabb, Camera, CameraSlot, Exposure, GlobalTransform, Name, Triangles, interior_camera};
 use crate::asset::Projection;
 
 /// A camera in world space: a right-handed orthonormal frame and a projection.
@@ -23,8 +23,8 @@ pub struct CameraPose {
     pub back: DVec3,
     /// Perspective or orthographic.
     pub projection: Projection,
-    /// Exposure value, if the camera has one.
-    pub ev100: Option<f32>,
+    /// The camera's.
+    pub exposure: Exposure,
 }
 
 /// The camera of a name, or the first one. `None` if the scene has none and none was asked for.
@@ -56,7 +56,7 @@ pub fn camera_pose(world: &mut World, name: Option<&str>, bounds: Option<Aabb>, 
     let (right, up, back) = rigid_axes(transform.matrix3);
     let position = transform.translation.as_dvec3();
     let position = if position.is_finite() { position } else { DVec3::ZERO };
-    Ok(CameraPose { position, right, up, back, projection: camera.projection, ev100: camera.ev100 })
+    Ok(CameraPose { position, right, up, back, projection: camera.projection, exposure: camera.exposure })
 }
 
 /// The last search for a room: it goes through all triangles, and is made again only when the bounds have changed.
@@ -95,7 +95,7 @@ pub fn framing_camera(bounds: Option<Aabb>, aspect: f64) -> CameraPose {
     let (right, up, back) = look_at(center - position);
     let near = ((distance - radius) * 0.05).clamp(1e-6, 1e30) as f32;
     let projection = Projection::Perspective { yfov: 2.0 * half_y as f32, near, far: None };
-    CameraPose { position, right, up, back, projection, ev100: None }
+    CameraPose { position, right, up, back, projection, exposure: Exposure::Unchanged }
 }
 
 /// Right, up and back of something at the origin that looks along `forward` with +Y up (with -Z up where it looks along Y).
@@ -125,7 +125,11 @@ mod tests {
     use crate::world::{Transform, assign_slots, new_world, propagate_transforms};
 
     fn camera(name: &str) -> Camera {
-        Camera { name: name.to_owned(), projection: Projection::Perspective { yfov: 1.0, near: 0.1, far: None }, ev100: None }
+        Camera {
+            name: name.to_owned(),
+            projection: Projection::Perspective { yfov: 1.0, near: 0.1, far: None },
+            exposure: Exposure::Unchanged,
+        }
     }
 
     #[test]

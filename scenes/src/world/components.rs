@@ -1,7 +1,7 @@
 //! What entities carry. Hierarchy and names are `bevy_ecs`'s own ([`super::ChildOf`], [`super::Children`], [`super::Name`]).
 
 use bevy_ecs::prelude::Component;
-use glam::{Affine3A, Vec3};
+use glam::{Affine3A, UVec3, Vec2, Vec3};
 
 use crate::asset::Projection;
 
@@ -10,7 +10,8 @@ use crate::asset::Projection;
 #[require(GlobalTransform)]
 pub struct Transform(pub Affine3A);
 
-/// To world space; written by [`super::propagate_transforms`]. Not finite where a product overflowed: such entities publish nothing.
+/// To world space; written by [`super::propagate_transforms`]. Not finite where a product overflowed: such entities publish
+/// nothing.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
 pub struct GlobalTransform(pub Affine3A);
 
@@ -57,6 +58,57 @@ pub struct Cone {
     pub outer: f32,
 }
 
+/// Light from a rectangle around the entity's origin that faces along its -Z. The mesh of the same entity shows it.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct RectangleLight {
+    /// Linear Rec.709.
+    pub color: Vec3,
+    /// Nits, the same in all directions, not negative.
+    pub luminance: f32,
+    /// Width along x and height along y, metres.
+    pub size: Vec2,
+    /// Emits to +Z as well.
+    pub two_sided: bool,
+}
+
+/// Where probes for diffuse light stand: a grid around the entity's origin, along its axes.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct ProbeVolume {
+    /// Probes along x, y and z, at least 1 each.
+    pub counts: UVec3,
+    /// From probe to probe, metres, greater than zero.
+    pub spacing: Vec3,
+}
+
+impl ProbeVolume {
+    /// Where the probe of these indices stands, in the entity's space.
+    pub fn position(&self, index: UVec3) -> Vec3 {
+        (index.as_vec3() - 0.5 * (self.counts.as_vec3() - 1.0)) * self.spacing
+    }
+}
+
+/// A probe for reflections at the entity's origin.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct ReflectionProbe {
+    /// Edges of the box around it in which it counts, metres.
+    pub size: Vec3,
+    /// Nothing nearer is captured, metres.
+    pub near: f32,
+    /// Nothing farther is captured, metres.
+    pub far: f32,
+}
+
+/// A box around the entity's origin, along its axes, that techniques can be limited to.
+#[derive(Component, Debug, Clone, Copy, PartialEq)]
+#[require(Transform)]
+pub struct Volume {
+    /// Edges, metres.
+    pub size: Vec3,
+}
+
 /// A camera, looking along the entity's -Z. Scale of its transform is ignored.
 #[derive(Component, Debug, Clone, PartialEq)]
 #[require(Transform)]
@@ -65,8 +117,20 @@ pub struct Camera {
     pub name: String,
     /// The vertical extent counts; the horizontal one follows the image.
     pub projection: Projection,
-    /// Exposure value at ISO 100; `None` leaves radiance as it is.
-    pub ev100: Option<f32>,
+    /// What radiance is multiplied with before it is shown.
+    pub exposure: Exposure,
+}
+
+/// A factor on radiance. What is not finite counts as [`Exposure::Unchanged`].
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
+pub enum Exposure {
+    /// 1: radiance stays as it is.
+    #[default]
+    Unchanged,
+    /// By an exposure value at ISO 100: `1 / (1.2 * 2^EV100)`.
+    Ev100(f32),
+    /// By hand: this factor; less than 0 counts as 0.
+    Factor(f32),
 }
 
 /// Row of a [`MeshInstance`] in the table `instances`.

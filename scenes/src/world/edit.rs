@@ -4,7 +4,7 @@ use bevy_ecs::prelude::{Entity, World};
 use glam::Vec3;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean};
 
-use super::{Name, Transform};
+use super::{Name, RestPose, Transform};
 
 /// The one entity of a name. Errors: no entity has it, or several have.
 pub fn find_by_name(world: &mut World, name: &str) -> Result<Entity, Diagnostic> {
@@ -24,7 +24,8 @@ pub fn find_by_name(world: &mut World, name: &str) -> Result<Entity, Diagnostic>
     }
 }
 
-/// Moves the node of that name to `translation`, in its parent's space, metres; rotation and scale stay.
+/// Moves the node of that name to `translation`, in its parent's space, metres; rotation and scale stay. An animation that moves it
+/// overrides this as soon as the time is set.
 /// Errors: see [`find_by_name`]; a translation that is not finite.
 pub fn set_translation(world: &mut World, name: &str, translation: Vec3) -> Result<(), Diagnostic> {
     if !translation.is_finite() {
@@ -34,6 +35,9 @@ pub fn set_translation(world: &mut World, name: &str, translation: Vec3) -> Resu
     match world.get_mut::<Transform>(entity) {
         Some(mut transform) => transform.0.translation = translation.into(),
         None => return Err(Diagnostic::error("world::no-place", format!("`{name}` has no place in the scene"))),
+    }
+    if let Some(mut rest) = world.get_mut::<RestPose>(entity) {
+        rest.0.translation = translation;
     }
     Ok(())
 }

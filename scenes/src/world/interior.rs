@@ -11,7 +11,7 @@ use std::f64::consts::{PI, TAU};
 use glam::DVec3;
 
 use super::triangles::{Hit, Triangles};
-use super::{Aabb, CameraPose, look_at};
+use super::{Aabb, CameraPose, Exposure, look_at};
 use crate::asset::Projection;
 
 /// Horizontal rays that look for walls.
@@ -55,7 +55,7 @@ pub fn interior_camera(triangles: &Triangles, bounds: Aabb) -> Option<CameraPose
     let (right, up, back) = look_at(forward + DVec3::Y * RISE);
     let near = (eye_height * 0.03).clamp(1e-6, 1e30) as f32;
     let projection = Projection::Perspective { yfov: FIELD_OF_VIEW.to_radians(), near, far: None };
-    (length > 0.0 && position.is_finite()).then_some(CameraPose { position, right, up, back, projection, ev100: None })
+    (length > 0.0 && position.is_finite()).then_some(CameraPose { position, right, up, back, projection, exposure: Exposure::Unchanged })
 }
 
 /// Distance to the floor under the middle of a room; `None` if it is no room.

@@ -1,10 +1,17 @@
 //! From an asset to entities.
 
+use std::ops::Range;
+use std::sync::Arc;
+
 use bevy_ecs::prelude::{Entity, World};
 use glam::{Affine3A, Vec3};
 
-use super::{Camera, ChildOf, Cone, DirectionalLight, Images, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, assign_slots};
-use crate::asset::{Asset, Light, LightKind, Material, Node, TextureUse};
+use super::animation::driven_nodes;
+use super::{
+    AnimationPlayer, Camera, ChildOf, Cone, DirectionalLight, Exposure, Images, LocalLight, Materials, MeshInstance, Meshes, Name,
+    RestPose, Transform, assign_slots,
+};
+use crate::asset::{Animation, Asset, Light, LightKind, Material, Node, TextureUse};
 
 /// An asset whose meshes, materials and images are in a world, ready to be spawned any number of times.
 #[derive(Debug, Clone)]
@@ -12,27 +19,61 @@ pub struct StoredAsset {
     nodes: Vec<Node>,
     lights: Vec<Light>,
     cameras: Vec<crate::asset::Camera>,
+    animations: Arc<[Animation]>,
     first_mesh: usize,
     /// Per mesh of the asset, its material in the world.
     mesh_materials: Vec<usize>,
+    /// Rows of its materials in the world, in its own order.
+    materials: Range<usize>,
+}
+
+impl StoredAsset {
+    /// Its nodes, in the order in which they are spawned.
+    pub(crate) fn nodes(&self) -> &[Node] {
+        &self.nodes
+    }
+
+    /// Its animations, in the order of the file.
+    pub(crate) fn animations(&self) -> &[Animation] {
+        &self.animations
+    }
+
+    /// Rows of its materials in the world.
+    pub(crate) fn materials(&self) -> Range<usize> {
+        self.materials.clone()
+    }
+
+    /// The same asset with other materials of its own: `change` makes the new one of an old one, or leaves it.
+    pub(crate) fn with_materials(&self, world: &mut World, mut change: impl FnMut(&Material) -> Option<Material>) -> StoredAsset {
+        let materials = &mut world.get_resource_or_init::<Materials>().0;
+        let first = materials.len();
+        let own: Vec<Material> = materials.get(self.materials.clone()).unwrap_or_default().to_vec();
+        materials.extend(own.into_iter().map(|material| change(&material).unwrap_or(material)));
+        let moved = |material: &usize| material - self.materials.start + first;
+        StoredAsset { mesh_materials: self.mesh_materials.iter().map(moved).collect(), materials: first..materials.len(), ..self.clone() }
+    }
 }
 
 /// Moves an asset's meshes, materials and images into the world and returns the rest.
 pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
     let first_image = append(&mut world.get_resource_or_init::<Images>().0, asset.images);
     let materials = asset.materials.into_iter().map(|material| shift_images(material, first_image)).collect();
-    let first_material = append(&mut world.get_resource_or_init::<Materials>().0, materials);
+    let rows = &mut world.get_resource_or_init::<Materials>().0;
+    let first_material = append(rows, materials);
+    let materials = first_material..rows.len();
     let mut meshes = asset.meshes;
     for mesh in &mut meshes {
         mesh.material += first_material;
     }
     let mesh_materials = meshes.iter().map(|mesh| mesh.material).collect();
     let first_mesh = append(&mut world.get_resource_or_init::<Meshes>().0, meshes);
-    StoredAsset { nodes: asset.nodes, lights: asset.lights, cameras: asset.cameras, first_mesh, mesh_materials }
+    let animations = asset.animations.into();
+    StoredAsset { nodes: asset.nodes, lights: asset.lights, cameras: asset.cameras, animations, first_mesh, mesh_materials, materials }
 }
 
 /// Spawns a copy of the asset's nodes below `parent` (or at the root) and returns an entity per node, in the asset's order.
-/// Meshes become children of their node, one each, without a name; lights and cameras stand on the node itself.
+/// Meshes become children of their node, one each, without a name; lights and cameras stand on the node itself. If the asset has
+/// animations, `parent` gets an [`AnimationPlayer`], or an entity of its own does where there is no parent or it has one already.
 pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entity>) -> Vec<Entity> {
     let mut entities: Vec<Entity> = Vec::with_capacity(asset.nodes.len());
     for node in &asset.nodes {
@@ -54,7 +95,7 @@ pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entit
             None => {}
         }
         if let Some(camera) = node.camera.and_then(|index| asset.cameras.get(index)) {
-            entity.insert(Camera { name: camera.name.clone(), projection: camera.projection, ev100: None });
+            entity.insert(Camera { name: camera.name.clone(), projection: camera.projection, exposure: Exposure::Unchanged });
         }
         let entity = entity.id();
         for mesh in &node.meshes {
@@ -65,8 +106,30 @@ pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entit
         }
         entities.push(entity);
     }
+    if !asset.animations.is_empty() {
+        spawn_player(world, asset, &entities, parent);
+    }
     assign_slots(world);
     entities
+}
+
+/// Adds the player. `entities` has one for each node.
+fn spawn_player(world: &mut World, asset: &StoredAsset, entities: &[Entity], parent: Option<Entity>) {
+    let mut driven = Vec::new();
+    for node in driven_nodes(&asset.animations) {
+        let pose = asset.nodes.get(node).and_then(|node| node.pose);
+        if let (Some(pose), Some(entity)) = (pose, entities.get(node)) {
+            world.entity_mut(*entity).insert(RestPose(pose));
+            driven.push((node, *entity));
+        }
+    }
+    let player = AnimationPlayer::new(asset.animations.clone(), driven);
+    let stand = match parent {
+        Some(parent) if world.get::<AnimationPlayer>(parent).is_none() => parent,
+        Some(parent) => world.spawn(ChildOf(parent)).id(),
+        None => world.spawn_empty().id(),
+    };
+    world.entity_mut(stand).insert(player);
 }
 
 /// Stores an asset and spawns it once, below an own root with the transform `parent` unless that is the identity.

@@ -42,6 +42,16 @@ pub fn propagate_transforms(world: &mut World) {
     }
 }
 
+/// Writes the [`Transform`] of an entity that has one if it differs in any bit.
+pub(super) fn place(world: &mut World, entity: Entity, local: Affine3A) {
+    let bits = |transform: &Affine3A| transform.to_cols_array().map(f32::to_bits);
+    if let Some(mut stored) = world.get_mut::<Transform>(entity)
+        && bits(&stored.0) != bits(&local)
+    {
+        stored.0 = local;
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use glam::{Quat, Vec3};

@@ -7,13 +7,16 @@ use luminaire_graph::diagnostic::{Diagnostic, render};
 use luminaire_graph::source::SourceMap;
 use luminaire_graph::syntax::read_document;
 
-use super::document::SceneDoc;
+mod hostile;
+mod nodes;
+mod reference;
+
+use super::SceneDoc;
 use super::{load_scene, load_scene_text};
 use crate::publish::counts;
-use crate::world::{Camera, DirectionalLight, GlobalTransform, Name, find_by_name, propagate_transforms, select_camera};
-
-const CORNELL: &str = include_str!("../../cornell.ron");
-const MATERIALS: &str = include_str!("../../materials.ron");
+use crate::world::{
+    Camera, DirectionalLight, Exposure, GlobalTransform, Name, find_by_name, propagate_transforms, select_camera, set_time,
+};
 
 fn problems(text: &str) -> (Vec<Diagnostic>, String) {
     let mut sources = SourceMap::default();
@@ -26,13 +29,35 @@ fn codes(text: &str) -> Vec<&'static str> {
     problems(text).0.iter().map(|problem| problem.code).collect()
 }
 
+/// Every scene that comes with the program, by name.
+fn shipped() -> Vec<(String, String)> {
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR"));
+    let paths = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+    let scenes = paths.filter(|path| path.extension().is_some_and(|extension| extension == "ron"));
+    let mut scenes: Vec<_> =
+        scenes.map(|path| (path.file_name().unwrap().display().to_string(), std::fs::read_to_string(&path).unwrap())).collect();
+    scenes.sort();
+    scenes
+}
+
 #[test]
 fn shipped_scenes_load() {
-    for (text, expected) in [(CORNELL, [0, 1, 0, 1, 7, 0, 0]), (MATERIALS, [1, 2, 0, 2, 32, 0, 0])] {
-        let scene = load_scene_text("shipped.ron", text, &mut SourceMap::default()).unwrap();
+    let expected =
+        [("cornell.ron", [0, 1, 0, 1, 7, 0, 0]), ("materials.ron", [1, 2, 0, 2, 32, 0, 0]), ("probe_grid.ron", [1, 1, 0, 1, 4096, 0, 0])];
+    let shipped = shipped();
+    assert!(shipped.len() >= 10);
+    for (name, text) in shipped {
+        let mut sources = SourceMap::default();
+        let mut scene =
+            load_scene_text(&name, &text, &mut sources).unwrap_or_else(|problems| panic!("{}", render(&problems, &sources, false)));
         assert!(scene.warnings.is_empty());
         let counts: Vec<u32> = counts(&scene.world).into_values().collect();
-        assert_eq!(counts, expected);
+        for (_, expected) in expected.iter().filter(|(scene, _)| *scene == name) {
+            assert_eq!(counts, expected, "{name}");
+        }
+        for seconds in [1.0, 2.5, 30.0] {
+            set_time(&mut scene.world, seconds).unwrap();
+        }
     }
 }
 
@@ -40,10 +65,10 @@ fn shipped_scenes_load() {
 fn shipped_scenes_mean_the_same_to_the_ron_crate() {
     use ron::extensions::Extensions;
     let options = ron::Options::default().with_default_extension(Extensions::IMPLICIT_SOME | Extensions::UNWRAP_NEWTYPES);
-    for text in [CORNELL, MATERIALS] {
-        let file = SourceMap::default().add("shipped.ron", text);
-        let document: SceneDoc = read_document(text, file).unwrap();
-        assert_eq!(document, options.from_str::<SceneDoc>(text).unwrap());
+    for (name, text) in shipped() {
+        let file = SourceMap::default().add("shipped.ron", text.as_str());
+        let document: SceneDoc = read_document(&text, file).unwrap();
+        assert_eq!(document, options.from_str::<SceneDoc>(&text).unwrap(), "{name}");
     }
 }
 
@@ -57,7 +82,7 @@ fn cameras_and_lights_stand_and_look_as_written() {
     propagate_transforms(&mut world);
     let default = select_camera(&mut world, None).unwrap().unwrap();
     assert_eq!(world.get::<Name>(default).unwrap().as_str(), "a");
-    assert_eq!(world.get::<Camera>(default).unwrap().ev100, Some(3.0));
+    assert_eq!(world.get::<Camera>(default).unwrap().exposure, Exposure::Ev100(3.0));
     let forward = |world: &crate::World, entity| world.get::<GlobalTransform>(entity).unwrap().0.transform_vector3(Vec3::NEG_Z);
     assert_eq!(forward(&world, default), Vec3::NEG_Z);
     assert_eq!(world.get::<GlobalTransform>(default).unwrap().0.translation, Vec3A::new(1.0, 2.0, 3.0));
@@ -86,7 +111,6 @@ fn everything_wrong_is_reported_at_once_with_its_place() {
     let (problems, rendered) = problems(text);
     let codes: Vec<&str> = problems.iter().map(|problem| problem.code).collect();
     let expected = [
-        "scene::duplicate-name",
         "scene::bad-number",
         "scene::no-direction",
         "scene::bad-number",
@@ -100,6 +124,7 @@ fn everything_wrong_is_reported_at_once_with_its_place() {
         "scene::which-material",
         "scene::bad-number",
         "scene::no-folder",
+        "scene::duplicate-name",
     ];
     assert_eq!(codes, expected, "{rendered}");
     assert!(problems.iter().all(|problem| problem.primary.as_ref().is_some_and(|label| label.span.is_somewhere())), "{rendered}");
