@@ -37,7 +37,9 @@ fn scene() -> (World, Vec<Entity>) {
         let light = LocalLight { color: Vec3::ONE, intensity: 100.0, range: Some(15.0), cone: None };
         world.spawn((Transform(Affine3A::from_translation(at)), light));
     }
-    let object = |index: usize| (Transform(Affine3A::from_translation(place(index))), MeshInstance { mesh: index % MESHES, material: index / MESHES % MATERIALS });
+    let object = |index: usize| {
+        (Transform(Affine3A::from_translation(place(index))), MeshInstance { mesh: index % MESHES, material: index / MESHES % MATERIALS })
+    };
     let objects = (0..OBJECTS).map(|index| world.spawn(object(index)).id()).collect();
     (world, objects)
 }

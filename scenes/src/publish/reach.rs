@@ -51,7 +51,7 @@ mod tests {
 
     #[test]
     fn light_ends_where_it_fades_or_never() {
-        let at = |candela: f32, range, least| reach(DVec3::ZERO, Vec3::new(0.5, candela, 0.0), range, least, scene(10.0), scene(10.0)).end;
+        let at = |candela: f32, range, least| reach(DVec3::ZERO, Vec3::new(0.05, candela, 0.0), range, least, scene(10.0), scene(10.0)).end;
         assert_eq!(at(0.1, None, 0.001), 10.0_f64.min((0.1_f32 as f64 / 0.001_f32 as f64).sqrt()));
         assert_eq!(at(0.31, None, 0.001), 0.0, "sqrt(310) is beyond the farthest corner, sqrt(300)");
         assert_eq!(at(0.1, Some(2.0), 0.001), 0.0, "the window ends it");

@@ -55,7 +55,7 @@ fn table_rows<Row: Pod>(published: &Published, table: &str) -> Vec<Row> {
 }
 
 fn slots(published: &Published, batch: &DrawBatch) -> Vec<u32> {
-    let table: Vec<u32> = table_rows(&published, "instance_slots");
+    let table: Vec<u32> = table_rows(published, "instance_slots");
     table[batch.first_instance as usize..][..batch.instance_count as usize].to_vec()
 }
 
@@ -99,7 +99,7 @@ fn solid_objects_share_a_call_per_material_mesh_and_orientation() {
 fn blended_objects_go_back_to_front_from_their_view() {
     let mut world = crowd();
     let lists =
-        [(DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, ViewKind::LocalLight(0, 2)), (DrawFilter::Opaque, ViewKind::Camera)];
+        [(DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, ViewKind::LocalLight(0, 3)), (DrawFilter::Opaque, ViewKind::Camera)];
     let published = publish(&mut world, &request(&[], &lists)).unwrap();
     let order =
         |list: usize| -> Vec<u32> { published.scene.draw_lists[list].batches.iter().flat_map(|batch| slots(&published, batch)).collect() };

@@ -128,9 +128,14 @@ impl SpatialIndex {
                 Some(entry) => self.known.insert(key, entry),
                 None => self.known.remove(&key),
             };
-            if !anew && before != entry {
-                before.map(|before| self.tree.remove(&before));
-                entry.map(|entry| self.tree.insert(entry));
+            if anew || before == entry {
+                continue;
+            }
+            if let Some(before) = before {
+                self.tree.remove(&before);
+            }
+            if let Some(entry) = entry {
+                self.tree.insert(entry);
             }
         }
         if anew {
