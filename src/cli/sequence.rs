@@ -111,7 +111,7 @@ impl Job<'_> {
         self.set_time(frame)
     }
 
-    /// Brings scene and session to a frame. Returns whether the session has another plan; of its warnings, new ones are reported.
+    /// Brings the scene and what renders it to a frame. Returns whether the plan is another; of its warnings, new ones are reported.
     fn go_on_to(&mut self, frame: u32, session: &mut Session) -> Result<bool, Problems> {
         self.set_time(frame)?;
         let before = session.warnings.0.clone();

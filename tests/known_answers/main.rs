@@ -9,6 +9,7 @@
 mod support;
 
 mod brdf;
+mod changes;
 mod irradiance;
 mod masks;
 mod materials;
@@ -26,8 +27,9 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 9] = [
+    let groups: [&[Case]; 10] = [
         brdf::CASES,
+        changes::CASES,
         irradiance::CASES,
         masks::CASES,
         materials::CASES,

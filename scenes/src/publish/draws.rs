@@ -77,7 +77,9 @@ impl Draws {
     /// The lists asked for, in that order.
     pub(super) fn update(&mut self, wanted: &[Name], input: &DrawInput<'_>, distance: impl Fn(ViewKind) -> Distance) -> Vec<DrawList> {
         let names: BTreeSet<Name> = wanted.iter().copied().map(name).collect();
+        let before = self.kept.len();
         self.kept.retain(|name, _| names.contains(name));
+        let mut stand_elsewhere = self.kept.len() != before || self.slots.is_empty();
         for name in &names {
             let kept = self.kept.entry(*name).or_default();
             let sorts = matches!(name.0, DrawFilter::Blended | DrawFilter::All);
@@ -86,8 +88,21 @@ impl Draws {
             let stale = input.changed.keys || faces || (sorts && (input.changed.blended || kept.distance != by));
             if kept.placed.is_none() || stale {
                 kept.make(*name, input, by);
+                stand_elsewhere = true;
             }
         }
+        if stand_elsewhere {
+            self.place();
+        }
+        let list = |(filter, view): &Name| {
+            let placed = self.kept.get(&name((*filter, *view))).and_then(|kept| kept.placed.as_ref());
+            DrawList { filter: *filter, view: *view, batches: placed.map(|(_, batches)| Arc::clone(batches)).unwrap_or_default() }
+        };
+        wanted.iter().map(list).collect()
+    }
+
+    /// Puts the slots of all lists behind each other.
+    fn place(&mut self) {
         let mut first = 0;
         let mut slots: Vec<u8> = Vec::new();
         for kept in self.kept.values_mut() {
@@ -103,11 +118,6 @@ impl Draws {
         } else {
             self.slots.set(&slots);
         }
-        let list = |(filter, view): &Name| {
-            let placed = self.kept.get(&name((*filter, *view))).and_then(|kept| kept.placed.as_ref());
-            DrawList { filter: *filter, view: *view, batches: placed.map(|(_, batches)| Arc::clone(batches)).unwrap_or_default() }
-        };
-        wanted.iter().map(list).collect()
     }
 
     /// The table `instance_slots`; it is never empty.

@@ -20,7 +20,7 @@ fn assign<Kind: Component, Slot: Component>(world: &mut World, make: fn(u32) -> 
     if waiting.is_empty() {
         return;
     }
-    waiting.sort_unstable_by_key(|entity| (entity.index_u32(), entity.generation().to_bits()));
+    waiting.sort_unstable_by_key(|entity| order(*entity));
     let mut held: Vec<u32> = world.query::<&Slot>().iter(world).map(index).collect();
     held.sort_unstable();
     let mut held = held.into_iter().peekable();
@@ -31,6 +31,11 @@ fn assign<Kind: Component, Slot: Component>(world: &mut World, make: fn(u32) -> 
     for (entity, slot) in waiting.into_iter().zip(free) {
         world.entity_mut(entity).insert(make(slot));
     }
+}
+
+/// By what entities are put in order: the index, then how often it was given away.
+pub(super) fn order(entity: Entity) -> (u32, u32) {
+    (entity.index_u32(), entity.generation().to_bits())
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use bevy_ecs::prelude::{Added, Changed, Component, Entity, Or, Resource, With, W
 use glam::{DVec3, Vec3};
 use rstar::{AABB, PointDistance, RTree, RTreeObject};
 
+use super::slots::order;
 use super::{Aabb, Camera, GlobalTransform, LocalLight, WorldBounds};
 
 /// What kind of thing is looked for.
@@ -151,10 +152,6 @@ fn places<Of: Component>(world: &mut World, kind: Kind, fresh: &mut Vec<((Entity
         let place = Vec3::from(transform.0.translation);
         fresh.push(((entity, kind), place.is_finite().then_some(Aabb { min: place, max: place })));
     }
-}
-
-fn order(entity: Entity) -> (u32, u32) {
-    (entity.index_u32(), entity.generation().to_bits())
 }
 
 fn sorted(found: impl Iterator<Item = Entity>) -> Vec<Entity> {
