@@ -32,7 +32,7 @@ impl Casters {
     /// Takes changed lamps and objects over; returns the faces that see others than before.
     pub(super) fn update(
         &mut self,
-        world: &World,
+        world: &mut World,
         wanted: impl Iterator<Item = ViewKind>,
         lights: &Lights,
         objects: &Objects,
@@ -89,8 +89,10 @@ impl Seen {
 }
 
 /// The slots of the objects that a lamp may reach.
-fn near(world: &World, lamp: &Lamp) -> impl Iterator<Item = u32> {
-    let found = world.get_resource::<SpatialIndex>().map(|index| index.in_sphere(Kind::Object, lamp.position, lamp.reach.casters));
+fn near(world: &mut World, lamp: &Lamp) -> impl Iterator<Item = u32> {
+    let index = world.get_resource_mut::<SpatialIndex>();
+    let found = index.map(|mut index| index.in_sphere(Kind::Object, lamp.position, lamp.reach.casters));
+    let world = &*world;
     found.unwrap_or_default().into_iter().filter_map(|entity| world.get::<ObjectSlot>(entity)).map(|slot| slot.0)
 }
 

@@ -1,7 +1,8 @@
 //! What stands where: an R*-tree over the bounds of objects and the places of lights and cameras.
 //!
-//! Guarantees: answers are exact for axis-aligned bounds and come in the order of entities, or of distance. Accepted downside: a box
-//! around a slanted thing holds more than the thing.
+//! Guarantees: answers are exact for axis-aligned bounds and come in the order of entities, or of distance. The tree is brought up to date
+//! when somebody asks, so that things which move while nobody does cost next to nothing. Accepted downside: a box around a slanted thing
+//! holds more than the thing.
 
 use std::collections::BTreeMap;
 
@@ -57,20 +58,25 @@ impl PointDistance for Entry {
 /// Where everything stands, as of the last [`super::update`].
 #[derive(Resource, Debug, Default)]
 pub struct SpatialIndex {
-    tree: RTree<Entry>,
     known: BTreeMap<(Entity, Kind), Entry>,
+    tree: RTree<Entry>,
+    /// What stands in the tree otherwise than it is known, or not at all, with how it stands there.
+    pending: BTreeMap<(Entity, Kind), Option<Entry>>,
 }
+
+/// A new tree of all things costs about as much as changing one in so many of them in the old one.
+const FEW: usize = 128;
 
 impl SpatialIndex {
     /// The things of a kind whose bounds meet a box, by entity.
-    pub fn in_box(&self, kind: Kind, bounds: Aabb) -> Vec<Entity> {
+    pub fn in_box(&mut self, kind: Kind, bounds: Aabb) -> Vec<Entity> {
         let meets = |entry: &&Entry| entry.kind == kind && entry.bounds.meets(bounds);
-        let found = self.tree.locate_in_envelope_intersecting(envelope(bounds)).filter(meets);
+        let found = self.settled().locate_in_envelope_intersecting(envelope(bounds)).filter(meets);
         sorted(found.map(|entry| entry.entity))
     }
 
     /// The things of a kind whose bounds come as near to a point as `radius`, metres, by entity.
-    pub fn in_sphere(&self, kind: Kind, center: DVec3, radius: f64) -> Vec<Entity> {
+    pub fn in_sphere(&mut self, kind: Kind, center: DVec3, radius: f64) -> Vec<Entity> {
         // A little larger, since the box is rounded.
         let reach = Vec3::splat((radius * (1.0 + 1e-6)) as f32);
         let middle = center.as_vec3();
@@ -78,12 +84,12 @@ impl SpatialIndex {
         let (min, max) = (middle - reach - slack, middle + reach + slack);
         let around = envelope(Aabb { min, max });
         let near = |entry: &&Entry| entry.kind == kind && entry.bounds.distance_squared(center) <= radius * radius;
-        sorted(self.tree.locate_in_envelope_intersecting(around).filter(near).map(|entry| entry.entity))
+        sorted(self.settled().locate_in_envelope_intersecting(around).filter(near).map(|entry| entry.entity))
     }
 
     /// The nearest things of a kind, at most `count`, nearest first, with their distances in metres.
-    pub fn nearest(&self, kind: Kind, point: DVec3, count: usize) -> Vec<(Entity, f64)> {
-        let of_kind = self.tree.nearest_neighbor_iter(point.as_vec3().to_array()).filter(|entry| entry.kind == kind);
+    pub fn nearest(&mut self, kind: Kind, point: DVec3, count: usize) -> Vec<(Entity, f64)> {
+        let of_kind = self.settled().nearest_neighbor_iter(point.as_vec3().to_array()).filter(|entry| entry.kind == kind);
         let mut found: Vec<(Entity, f64)> =
             of_kind.take(count).map(|entry| (entry.entity, entry.bounds.distance_squared(point).sqrt())).collect();
         found.sort_by(|a, b| a.1.total_cmp(&b.1).then(order(a.0).cmp(&order(b.0))));
@@ -121,27 +127,34 @@ impl SpatialIndex {
     }
 
     fn take(&mut self, fresh: Vec<((Entity, Kind), Option<Aabb>)>) {
-        // Many changes cost more one by one than a new tree.
-        let anew = fresh.len() > self.known.len() / 8;
         for (key, bounds) in fresh {
             let entry = bounds.map(|bounds| Entry { entity: key.0, kind: key.1, bounds });
             let before = match entry {
                 Some(entry) => self.known.insert(key, entry),
                 None => self.known.remove(&key),
             };
-            if anew || before == entry {
-                continue;
+            if before != entry {
+                self.pending.entry(key).or_insert(before);
             }
+        }
+    }
+
+    /// The tree, up to date.
+    fn settled(&mut self) -> &RTree<Entry> {
+        let pending = std::mem::take(&mut self.pending);
+        if pending.len() > self.known.len() / FEW {
+            self.tree = RTree::bulk_load(self.known.values().copied().collect());
+            return &self.tree;
+        }
+        for (key, before) in pending {
             if let Some(before) = before {
                 self.tree.remove(&before);
             }
-            if let Some(entry) = entry {
-                self.tree.insert(entry);
+            if let Some(now) = self.known.get(&key) {
+                self.tree.insert(*now);
             }
         }
-        if anew {
-            self.tree = RTree::bulk_load(self.known.values().copied().collect());
-        }
+        &self.tree
     }
 }
 
@@ -185,7 +198,9 @@ mod tests {
         ) {
             let mut world = new_world();
             world.resource_mut::<Meshes>().0.push(cuboid("box", Vec3::ONE, 0));
-            let mut boxes: Vec<Entity> = Vec::new();
+            // Enough that few changes are made in the tree that stands.
+            let grid = (0..3 * FEW).map(|index| Vec3::new((index % 20) as f32 - 10.0, 0.0, (index / 20) as f32 - 10.0));
+            let mut boxes: Vec<Entity> = grid.map(|at| box_at(&mut world, at)).collect();
             let center = DVec3::from_array(center);
             for (what, which, at) in steps {
                 let at = Vec3::from_array(at);
@@ -195,14 +210,17 @@ mod tests {
                     (1, Some(which)) => world.get_mut::<Transform>(boxes[which]).unwrap().0.translation = at.into(),
                     _ => boxes.push(box_at(&mut world, at)),
                 }
-                if what > 1 {
+                if what > 0 {
                     update(&mut world);
+                }
+                if what > 1 {
+                    world.resource_mut::<SpatialIndex>().in_sphere(Kind::Object, center, radius);
                 }
             }
             update(&mut world);
             let bounds: Vec<(Entity, Aabb)> =
                 world.query::<(Entity, &WorldBounds)>().iter(&world).map(|(entity, bounds)| (entity, bounds.bounds.unwrap())).collect();
-            let index = world.resource::<SpatialIndex>();
+            let mut index = world.resource_mut::<SpatialIndex>();
             let near = bounds.iter().filter(|(_, bounds)| bounds.distance_squared(center) <= radius * radius);
             prop_assert_eq!(index.in_sphere(Kind::Object, center, radius), sorted(near.map(|(entity, _)| *entity)));
             let nearest = bounds.iter().map(|(_, bounds)| bounds.distance_squared(center).sqrt()).fold(f64::INFINITY, f64::min);
