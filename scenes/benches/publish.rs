@@ -12,10 +12,10 @@ use bevy_ecs::prelude::{Entity, World};
 use criterion::{Criterion, criterion_group, criterion_main};
 use glam::{Affine3A, Vec3};
 use luminaire_graph::published::{DrawFilter, ViewKind, ViewRequest};
-use luminaire_scenes::asset::Material;
+use luminaire_scenes::asset::{Material, Projection};
 use luminaire_scenes::primitive::cuboid;
 use luminaire_scenes::publish::{PublishRequest, Publisher};
-use luminaire_scenes::world::{DirectionalLight, LocalLight, Materials, MeshInstance, Meshes, Transform, new_world};
+use luminaire_scenes::world::{Camera, DirectionalLight, Exposure, LocalLight, Materials, MeshInstance, Meshes, Transform, new_world};
 
 const OBJECTS: usize = 10_000;
 const MESHES: usize = 100;
@@ -31,6 +31,10 @@ fn scene() -> (World, Vec<Entity>) {
     let mut world = new_world();
     world.resource_mut::<Meshes>().0 = (0..MESHES).map(|mesh| cuboid("box", Vec3::splat(0.5 + mesh as f32 * 0.005), 0)).collect();
     world.resource_mut::<Materials>().0 = vec![Material::default(); MATERIALS];
+    // Without a camera, changed bounds would start a search for one.
+    let projection = Projection::Perspective { yfov: 0.8, near: 0.1, far: None };
+    let camera = Camera { name: "main".to_owned(), projection, exposure: Exposure::Unchanged };
+    world.spawn((Transform(Affine3A::from_translation(Vec3::new(75.0, 20.0, 170.0))), camera));
     world.spawn((Transform(Affine3A::from_rotation_x(-1.0)), DirectionalLight { color: Vec3::ONE, illuminance: 10_000.0 }));
     for lamp in 0..LAMPS {
         let at = Vec3::new(20.0 * lamp as f32, 4.0, 70.0);
