@@ -56,9 +56,9 @@ fn settled(case: &Case<'_>) -> Harness {
 fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
     let mut harness = settled(&PBR);
     let from_camera = |input: &Input| match input {
-        Input::Table(name) => name == "camera",
+        Input::Table(name, _) => name == "camera",
         Input::View(view) => view.kind == ViewKind::Camera,
-        Input::Draws(_, view) => *view == ViewKind::Camera,
+        Input::Draws(_, view, _) => *view == ViewKind::Camera,
         _ => false,
     };
     assert!(harness.change(from_camera) > 0);

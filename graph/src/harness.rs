@@ -118,7 +118,7 @@ impl Harness {
         (0..=most).find(|_| self.frame().is_empty())
     }
 
-    /// Changes every input that fits; how many there are. `harness.change(|input| matches!(input, Input::Table(name) if name == "camera"))`
+    /// Changes every input that fits; how many there are. `harness.change(|input| matches!(input, Input::Table(name, _) if name == "camera"))`
     pub fn change(&mut self, fits: impl Fn(&Input) -> bool) -> usize {
         let inputs = self.tracker.inputs().to_vec();
         let mut changed = 0;
@@ -129,9 +129,9 @@ impl Harness {
         changed
     }
 
-    /// Changes the published table of this name, and its rows; how many inputs that is.
+    /// Changes the published table of this name, and its rows, in every member; how many inputs that is.
     pub fn change_table(&mut self, name: &str) -> usize {
-        self.change(|input| matches!(input, Input::Table(table) | Input::Row(table, _) if table == name))
+        self.change(|input| matches!(input, Input::Table(table, _) | Input::Row(table, ..) if table == name))
     }
 
     /// Loses the device: nothing is held any more.

@@ -1,26 +1,34 @@
-//! Revisions of what a scene publishes: equal bytes are the same revision.
+//! Revisions of what a scene publishes: equal bytes are the same revision, and bytes that nobody reads are no matter.
 //!
 //! What a draw list shows is its batches with the rows that they show; where those stand in their tables is no matter. States of a scene
 //! share what did not change, so that an update costs what did: changed rows are found once, and each list is asked whether it shows one
-//! of them. Accepted: a change of any geometry or texture counts for every list, and an input that a plan in between did not have is new.
+//! of them. Accepted: a change of any geometry counts for every list, one of any texture for every list that samples some, an object
+//! that gets another material counts whatever that material is, and an input that a plan in between did not have is new.
 
 use std::collections::HashMap;
 use std::sync::Arc;
 
-use luminaire_graph::plan::{Input, Plan};
-use luminaire_graph::published::{DrawBatch, PublishedGeometry, PublishedMaterials, PublishedScene, Table};
+use luminaire_graph::plan::{DrawReads, Input, Plan};
+use luminaire_graph::published::{DrawBatch, PublishedGeometry, PublishedMaterials, PublishedScene, RowReads, Table};
 
 /// The content and revision of every input of the plan.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Revisions {
     known: HashMap<Input, (Content, u64)>,
-    /// Geometry, textures, samplers and materials: one revision for all.
-    shared: u64,
+    /// All geometry has one revision; so have all textures with their samplers.
+    shared: Shared,
     next: u64,
     /// As of the last update.
     geometry: Arc<PublishedGeometry>,
     materials: Arc<PublishedMaterials>,
     rows: Rows,
+}
+
+/// Revisions of what all lists share.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
+struct Shared {
+    geometry: u64,
+    textures: u64,
 }
 
 /// What an input is.
@@ -40,8 +48,10 @@ struct Rows {
     materials: Table,
 }
 
-/// Rows that are others than in the update before.
-struct ChangedRows {
+/// Rows that are others than in the update before, with the tables of both.
+struct ChangedRows<'a> {
+    before: &'a Rows,
+    now: &'a Rows,
     instances: Vec<u32>,
     materials: Vec<u32>,
     /// Whether any list may stand for other rows.
@@ -51,7 +61,7 @@ struct ChangedRows {
 /// What a draw list shows.
 #[derive(Debug, Clone)]
 struct Shown {
-    shared: u64,
+    shared: Shared,
     batches: Arc<Vec<DrawBatch>>,
     /// Rows of `instances`, in order.
     slots: Vec<u32>,
@@ -66,8 +76,10 @@ impl Rows {
         Rows { instances, slots, materials }
     }
 
-    fn changed(&self, before: &Rows) -> ChangedRows {
+    fn changed<'a>(&'a self, before: &'a Rows) -> ChangedRows<'a> {
         ChangedRows {
+            before,
+            now: self,
             instances: self.instances.changed_rows(&before.instances),
             materials: self.materials.changed_rows(&before.materials),
             slots: self.slots != before.slots,
@@ -84,16 +96,21 @@ impl Rows {
 impl Revisions {
     /// Takes a scene over; returns the revisions of a plan's inputs, in order.
     pub(crate) fn update(&mut self, plan: &Plan, scene: &PublishedScene) -> Vec<u64> {
-        if self.geometry != scene.geometry || self.materials != scene.materials {
-            self.shared += 1;
-            (self.geometry, self.materials) = (Arc::clone(&scene.geometry), Arc::clone(&scene.materials));
+        if self.geometry != scene.geometry {
+            self.shared.geometry += 1;
+            self.geometry = Arc::clone(&scene.geometry);
         }
-        let rows = Rows::of(scene);
-        let changed = rows.changed(&self.rows);
-        let mut before = std::mem::take(&mut self.known);
+        if self.materials != scene.materials {
+            self.shared.textures += 1;
+            self.materials = Arc::clone(&scene.materials);
+        }
+        let before = std::mem::replace(&mut self.rows, Rows::of(scene));
+        let rows = self.rows.clone();
+        let changed = rows.changed(&before);
+        let mut standing = std::mem::take(&mut self.known);
         let mut found = Vec::with_capacity(plan.inputs.len());
         for input in &plan.inputs {
-            let known = before.remove(input);
+            let known = standing.remove(input);
             let (content, revision) = match known {
                 Some((content, revision)) => match self.renewed(plan, scene, &rows, &changed, input, &content) {
                     None => (content, revision),
@@ -104,7 +121,6 @@ impl Revisions {
             found.push(revision);
             self.known.insert(input.clone(), (content, revision));
         }
-        self.rows = rows;
         found
     }
 
@@ -119,24 +135,25 @@ impl Revisions {
         plan: &Plan,
         scene: &PublishedScene,
         rows: &Rows,
-        changed: &ChangedRows,
+        changed: &ChangedRows<'_>,
         input: &Input,
         before: &Content,
     ) -> Option<Content> {
-        if let (Input::Draws(filter, view), Content::Draws(shown)) = (input, before) {
+        if let (Input::Draws(filter, view, reads), Content::Draws(shown)) = (input, before) {
             let batches = scene.draw_list(*filter, *view).cloned().unwrap_or_default();
-            let same = shown.shared == self.shared && !shown.shows_changed(changed);
             let untouched = Arc::ptr_eq(&shown.batches, &batches) && !changed.slots;
-            if same && (untouched || same_batches(&shown.batches, &batches) && shown.slots == rows.shown(&batches)) {
+            let same_objects = untouched || same_batches(&shown.batches, &batches) && shown.slots == rows.shown(&batches);
+            if same_objects && self.shared.same_for(shown.shared, reads) && !shown.shows_changed(changed, reads) {
                 return None;
             }
             return Some(self.content(plan, scene, rows, input));
         }
         let content = self.content(plan, scene, rows, input);
-        let same = match (&content, before) {
-            (Content::Table(now), Content::Table(before)) => now == before,
-            (Content::Bytes(now), Content::Bytes(before)) => now == before,
-            (Content::Nothing, Content::Nothing) => true,
+        let same = match (input, &content, before) {
+            (Input::Table(_, reads), Content::Table(now), Content::Table(before)) => same_table(reads, now, before),
+            (Input::Row(.., reads), Content::Bytes(now), Content::Bytes(before)) => reads.agree(now, before),
+            (_, Content::Bytes(now), Content::Bytes(before)) => now == before,
+            (_, Content::Nothing, Content::Nothing) => true,
             _ => false,
         };
         (!same).then_some(content)
@@ -144,8 +161,8 @@ impl Revisions {
 
     fn content(&self, plan: &Plan, scene: &PublishedScene, rows: &Rows, input: &Input) -> Content {
         match input {
-            Input::Table(name) => Content::Table(scene.tables.get(name).cloned().unwrap_or_default()),
-            Input::Row(name, row) => {
+            Input::Table(name, _) => Content::Table(scene.tables.get(name).cloned().unwrap_or_default()),
+            Input::Row(name, row, _) => {
                 let row = scene.tables.get(name).and_then(|table| table.row(*row as usize));
                 Content::Bytes(row.unwrap_or_default().to_vec())
             }
@@ -153,7 +170,7 @@ impl Revisions {
                 let place = plan.views.iter().position(|known| known == view);
                 Content::Bytes(place.and_then(|place| scene.views.get(place)).cloned().unwrap_or_default())
             }
-            Input::Draws(filter, view) => {
+            Input::Draws(filter, view, _) => {
                 let batches = scene.draw_list(*filter, *view).cloned().unwrap_or_default();
                 let slots = rows.shown(&batches);
                 Content::Draws(Shown { shared: self.shared, members: members(&slots), slots, batches })
@@ -163,12 +180,39 @@ impl Revisions {
     }
 }
 
-impl Shown {
-    fn shows_changed(&self, changed: &ChangedRows) -> bool {
-        let has = |slot: &u32| self.members.get(*slot as usize / 64).is_some_and(|bits| bits >> (slot % 64) & 1 == 1);
-        let material = |batch: &DrawBatch| changed.materials.binary_search(&(batch.material as u32)).is_ok();
-        changed.instances.iter().any(has) || (!changed.materials.is_empty() && self.batches.iter().any(material))
+impl Shared {
+    fn same_for(self, before: Shared, reads: &DrawReads) -> bool {
+        self.geometry == before.geometry && (!reads.textures || self.textures == before.textures)
     }
+}
+
+impl Shown {
+    /// Whether a row that is shown changed in what is read of it.
+    fn shows_changed(&self, changed: &ChangedRows<'_>, reads: &DrawReads) -> bool {
+        let differs = |table: &str, at: u32, before: &Table, now: &Table| {
+            reads.rows.get(table).is_some_and(|reads| !reads.agree(row(before, at), row(now, at)))
+        };
+        let has = |row: &u32| self.members.get(*row as usize / 64).is_some_and(|bits| bits >> (row % 64) & 1 == 1);
+        let instance = |row: &u32| has(row) && differs("instances", *row, &changed.before.instances, &changed.now.instances);
+        let material = |row: &u32| {
+            let shows = || self.batches.iter().any(|batch| batch.material as u32 == *row);
+            differs("materials", *row, &changed.before.materials, &changed.now.materials) && shows()
+        };
+        changed.instances.iter().any(instance) || changed.materials.iter().any(material)
+    }
+}
+
+/// A row that is not there has no bytes.
+fn row(table: &Table, at: u32) -> &[u8] {
+    table.row(at as usize).unwrap_or_default()
+}
+
+/// Whether tables agree in what is read of them.
+fn same_table(reads: &RowReads, now: &Table, before: &Table) -> bool {
+    now == before
+        || (*reads != RowReads::Whole
+            && (now.len(), now.stride()) == (before.len(), before.stride())
+            && now.changed_rows(before).into_iter().all(|changed| reads.agree(row(now, changed), row(before, changed))))
 }
 
 fn members(slots: &[u32]) -> Vec<u64> {

@@ -100,6 +100,7 @@ pub(super) fn program(shader_index: usize, shader: &Shader, vertex: Option<usize
             });
             let (known, stages) = &mut globals[index];
             merge(&mut known.kind, &global.kind);
+            known.reads.add(&global.reads);
             match entry.stage {
                 Stage::Vertex => stages.vertex = true,
                 Stage::Fragment => stages.fragment = true,

@@ -8,10 +8,12 @@ use super::program::Program;
 use super::slots::{Taken, Taker};
 use super::{BindInput, formats as format_choice, limits, params, tables, targets, views, work};
 use crate::device::Feature;
-use crate::expand::types::{BatchIteration, ClearValue, Expanded, PartRef, Pass, PassId, PassKind, Run, Shape, Work};
+use crate::expand::types::{BatchIteration, ClearValue, Element, Expanded, PartRef, Pass, PassId, PassKind, Run, Shape, Work};
 use crate::format::Format;
-use crate::plan::{Access, Binding, BindingTarget, Input, InputId, PartView, Requirement, Role, Step, StepIteration, StepKind, Use};
-use crate::published::{DrawFilter, ViewKind, ViewRequest};
+use crate::plan::{
+    Access, Binding, BindingTarget, DrawReads, Input, InputId, PartView, Requirement, Role, Step, StepIteration, StepKind, Use,
+};
+use crate::published::{DrawFilter, RowReads, ViewKind, ViewRequest};
 use crate::reflect::interface::{GlobalKind, Shader, StorageAccess};
 
 /// Distinct values in the order of their first use, by index.
@@ -106,10 +108,9 @@ impl<'a> Builder<'a> {
         let clears = self.clears(pass, taken);
         let uses: Vec<Use> = taken.iter().map(|slot| self.touch(pass, slot)).collect();
         let inputs = self.step_inputs(pass, program, &kind, &bindings);
-        let batch = pass
-            .batch
-            .as_ref()
-            .map_or_else(Vec::new, |batch| batch.iterations.iter().map(|iteration| self.iteration(pass, &uses, iteration)).collect());
+        let batch = pass.batch.as_ref().map_or_else(Vec::new, |batch| {
+            batch.iterations.iter().map(|iteration| self.iteration(pass, program, &uses, iteration)).collect()
+        });
         Some(Step {
             pass: id,
             name: pass.name.clone(),
@@ -156,9 +157,7 @@ impl<'a> Builder<'a> {
     fn step_inputs(&mut self, pass: &Pass, program: Option<&Program>, kind: &StepKind, bindings: &[Binding]) -> Vec<InputId> {
         let mut found = Vec::new();
         let draws = matches!(kind, StepKind::Draw { .. });
-        if let PassKind::Draw { objects, view, .. } = &pass.kind {
-            found.push(Input::Draws(*objects, *view));
-        }
+        let mut drawn = DrawReads::default();
         let batched = |table: &str| {
             let mut elements = pass.batch.iter().flat_map(|batch| &batch.iterations).filter_map(|iteration| iteration.element.as_ref());
             elements.any(|element| element.table == table)
@@ -166,13 +165,19 @@ impl<'a> Builder<'a> {
         for binding in bindings {
             match &binding.target {
                 BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => {
-                    let per_draw = self.input.published.tables.get(name).is_some_and(|table| table.per_draw);
-                    let elsewhere = (draws && per_draw) || batched(name);
-                    if !elsewhere {
-                        found.push(Input::Table(name.clone()));
+                    let table = self.input.published.tables.get(name);
+                    let reads = self.reads(program, &binding.variable, name);
+                    if draws && table.is_some_and(|table| table.per_draw) {
+                        drawn.rows.insert(name.clone(), reads);
+                    } else if !batched(name) {
+                        found.push(Input::Table(name.clone(), reads));
                     }
                 }
-                BindingTarget::TableRow(table, row) => found.push(Input::Row(table.clone(), *row)),
+                BindingTarget::TableRow(table, row) => {
+                    let reads = self.reads(program, &binding.variable, table);
+                    found.push(Input::Row(table.clone(), *row, reads));
+                }
+                BindingTarget::MaterialTexture(_) | BindingTarget::MaterialSampler(_) => drawn.textures = true,
                 BindingTarget::View(view) => found.extend(self.views.values.get(*view).copied().map(Input::View)),
                 BindingTarget::Params { .. } => {
                     let globals = program.into_iter().flat_map(|program| &program.globals);
@@ -186,7 +191,17 @@ impl<'a> Builder<'a> {
                 _ => {}
             }
         }
+        if let PassKind::Draw { objects, view, .. } = &pass.kind {
+            found.push(Input::Draws(*objects, *view, drawn));
+        }
         self.intern(found)
+    }
+
+    /// What a program reads of a table by a variable.
+    fn reads(&self, program: Option<&Program>, variable: &str, table: &str) -> RowReads {
+        let reads = program.and_then(|program| program.global(variable)).map_or(RowReads::Whole, |global| global.reads.clone());
+        let members = self.input.published.tables.get(table).map_or(&[][..], |table| &table.members);
+        reads.of_table(members)
     }
 
     fn intern(&mut self, found: Vec<Input>) -> Vec<InputId> {
@@ -196,7 +211,7 @@ impl<'a> Builder<'a> {
         ids
     }
 
-    fn iteration(&mut self, pass: &Pass, uses: &[Use], iteration: &BatchIteration) -> StepIteration {
+    fn iteration(&mut self, pass: &Pass, program: Option<&Program>, uses: &[Use], iteration: &BatchIteration) -> StepIteration {
         let slots = pass.reads.iter().chain(&pass.writes).chain(&pass.modifies);
         let parts = uses.iter().map(|used| {
             let place = slots.clone().position(|slot| slot.name.value == used.slot);
@@ -207,7 +222,9 @@ impl<'a> Builder<'a> {
             })
         });
         let parts = parts.collect();
-        let element = iteration.element.iter().map(|element| Input::Row(element.table.clone(), element.row)).collect();
+        // A batched pass finds its element's row in the table.
+        let row = |element: &Element| Input::Row(element.table.clone(), element.row, self.reads(program, &element.table, &element.table));
+        let element = iteration.element.iter().map(row).collect();
         StepIteration { parts, inputs: self.intern(element) }
     }
 

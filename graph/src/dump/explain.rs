@@ -130,13 +130,13 @@ fn idle(idle: Idle) -> (&'static str, String) {
     }
 }
 
-/// The name of an input: `camera`, `local_lights[2]`, `view of local light 0, face 3`.
+/// The name of an input: `camera.exposure`, `local_lights[2]`, `view of local light 0, face 3`.
 pub(crate) fn input_name(plan: &Plan, index: usize) -> String {
     match plan.inputs.get(index) {
-        Some(Input::Table(name)) => name.clone(),
-        Some(Input::Row(name, row)) => format!("{name}[{row}]"),
+        Some(Input::Table(name, reads)) => format!("{name}{reads}"),
+        Some(Input::Row(name, row, reads)) => format!("{name}[{row}]{reads}"),
         Some(Input::View(view)) => format!("view of {}", describe::view(view.kind)),
-        Some(Input::Draws(filter, view)) => format!("{} surfaces of {}", describe::objects(*filter), describe::view(*view)),
+        Some(Input::Draws(filter, view, _)) => format!("{} surfaces of {}", describe::objects(*filter), describe::view(*view)),
         Some(Input::Param(name)) => format!("parameter {name}"),
         None => "?".to_owned(),
     }

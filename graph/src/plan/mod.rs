@@ -5,8 +5,8 @@
 mod step;
 
 pub use step::{
-    Access, Binding, BindingTarget, BuiltinSampler, ColorTarget, Cull, DepthTarget, Input, InputId, Load, PartView, Role, SampleType,
-    Stages, Step, StepIteration, StepKind, Targets, Use, Workgroups,
+    Access, Binding, BindingTarget, BuiltinSampler, ColorTarget, Cull, DepthTarget, DrawReads, Input, InputId, Load, PartView, Role,
+    SampleType, Stages, Step, StepIteration, StepKind, Targets, Use, Workgroups,
 };
 
 use std::sync::Arc;

@@ -1,12 +1,13 @@
 //! Steps: what a pass does on a device, as values. Every name is resolved, and indices point into the [`Plan`](super::Plan).
 
+use std::collections::BTreeMap;
 use std::ops::Range;
 use std::sync::Arc;
 
 use super::Usage;
 use crate::expand::types::{ClearValue, OnResize, PassId, ResourceId, Run};
 use crate::format::Format;
-use crate::published::{DrawFilter, ViewKind, ViewRequest};
+use crate::published::{DrawFilter, RowReads, ViewKind, ViewRequest};
 use crate::reflect::interface::{StorageAccess, ViewDimension};
 use crate::source::Span;
 use crate::syntax::document::{BlendDoc, CompareDoc};
@@ -64,16 +65,25 @@ impl InputId {
 /// Something outside of the graph that has a revision.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Input {
-    /// A published table.
-    Table(String),
-    /// A row of a published table.
-    Row(String, u32),
+    /// What is read of a published table: of every row, and how many there are.
+    Table(String, RowReads),
+    /// What is read of a row of a published table.
+    Row(String, u32, RowReads),
     /// The table of a view.
     View(ViewRequest),
-    /// What a draw list shows: its batches, their geometry, transforms, materials and textures.
-    Draws(DrawFilter, ViewKind),
+    /// What a draw list shows: its batches, their geometry, and what is read of their rows.
+    Draws(DrawFilter, ViewKind, DrawReads),
     /// A parameter that is marked `live`.
     Param(String),
+}
+
+/// What a Draw reads of what its list shows.
+#[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Default)]
+pub struct DrawReads {
+    /// By the name of the table.
+    pub rows: BTreeMap<String, RowReads>,
+    /// Textures and samplers of materials.
+    pub textures: bool,
 }
 
 /// What a step does.

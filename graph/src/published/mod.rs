@@ -3,11 +3,13 @@
 //! The graph knows the *schema* (names, kinds and layouts, to check shaders against and to bind by name) and nothing of what
 //! the tables mean. The *data* is plain bytes: a scene fills it, an executor uploads it, and neither knows the other.
 
+mod reads;
 mod scene;
 mod table;
 
 use indexmap::IndexMap;
 
+pub use reads::{ReadMember, RowReads};
 pub use scene::{
     DrawBatch, DrawList, MaterialBinding, PublishedGeometry, PublishedMaterials, PublishedSampler, PublishedScene, PublishedTexture,
     PublishedWrap,

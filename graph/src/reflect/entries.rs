@@ -9,6 +9,7 @@ use super::interface::{ColorOutput, EntryPoint, Override, Stage, Varying, Vertex
 use super::io::{Io, inputs, outputs};
 use super::overrides;
 use super::places::Places;
+use super::reads;
 use super::types::{numeric, type_text};
 use super::varyings::interpolation_text;
 
@@ -49,10 +50,12 @@ pub(super) fn describe(
     order.sort_by_key(|(index, entry)| (places.function_order(&entry.name), *index));
     let mut errors = Vec::new();
     let mut entries = Vec::new();
+    let reads = reads::of_entries(module, info);
     for (index, entry) in order {
         let Some(stage) = stage(entry.stage) else { continue };
         let info = info.get_entry_point(index);
-        let globals = globals::used(module, info, declared);
+        let Some(reads) = reads.get(index) else { continue };
+        let globals = globals::used(module, info, declared, reads);
         errors.extend(globals::check_stage(entry, &globals, places));
         let (inputs, outputs) = (inputs(module, entry, places), outputs(module, entry, places));
         let mut described = EntryPoint {

@@ -5,10 +5,12 @@ use naga::valid::{FunctionInfo, GlobalUse};
 use naga::{AddressSpace, Handle, ImageClass, ImageDimension, Module, ShaderStage, Type, TypeInner};
 
 use super::error::ReflectError;
-use super::interface::{Global, GlobalKind, StorageAccess, ViewDimension};
+use super::interface::{Global, GlobalKind, Layout, StorageAccess, ViewDimension};
 use super::places::Places;
+use super::reads::{self, Reads};
 use super::types::{layout, scalar_kind, type_text};
 use crate::format::{Format, StorageSupport};
+use crate::published::RowReads;
 use crate::source::Span;
 
 /// Samplers that never filter, by name.
@@ -41,7 +43,7 @@ pub(super) fn declared(module: &Module, places: &Places<'_>) -> (Vec<Declared>, 
         match kind(module, variable, &name, span, places) {
             Ok(Some(kind)) => {
                 let (group, binding) = variable.binding.map_or((0, 0), |binding| (binding.group, binding.binding));
-                found.push(Declared { handle, global: Global { name, span, group, binding, kind } });
+                found.push(Declared { handle, global: Global { name, span, group, binding, kind, reads: RowReads::Whole } });
             }
             Ok(None) => {}
             Err(error) => errors.push(error),
@@ -152,13 +154,16 @@ fn storage_access(access: naga::StorageAccess) -> StorageAccess {
 }
 
 /// The variables that an entry point uses, directly or through what it calls, and how.
-pub(super) fn used(module: &Module, info: &FunctionInfo, declared: &[Declared]) -> Vec<Global> {
+pub(super) fn used(module: &Module, info: &FunctionInfo, declared: &[Declared], reads: &Reads) -> Vec<Global> {
     let use_of = |handle: Handle<naga::GlobalVariable>| info.global_uses.get(handle.index()).copied().unwrap_or(GlobalUse::empty());
     declared
         .iter()
         .filter(|variable| !use_of(variable.handle).is_empty())
         .map(|variable| {
             let mut global = variable.global.clone();
+            if let GlobalKind::Uniform { layout } | GlobalKind::Storage { layout, .. } = &global.kind {
+                global.reads = row_reads(module, variable.handle, layout, reads);
+            }
             match &mut global.kind {
                 GlobalKind::Storage { writes, reads, .. } => {
                     let uses = use_of(variable.handle);
@@ -171,6 +176,17 @@ pub(super) fn used(module: &Module, info: &FunctionInfo, declared: &[Declared]) 
             global
         })
         .collect()
+}
+
+/// What is read of a struct, or of each element of an array of structs; all of anything else.
+fn row_reads(module: &Module, variable: Handle<naga::GlobalVariable>, layout: &Layout, reads: &Reads) -> RowReads {
+    if !reads::has_rows(module, variable) {
+        return RowReads::Whole;
+    }
+    match reads.members(variable) {
+        Some(members) => layout.reads(members),
+        None => layout.reads(0..layout.members.len()),
+    }
 }
 
 /// Whether a texture meets a sampler that filters.

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use crate::expand::types::Dimension;
 use crate::format::Format;
+use crate::published::{ReadMember, RowReads};
 use crate::source::Span;
 
 /// A shader file with its imports, checked.
@@ -134,6 +135,8 @@ pub struct Global {
     pub binding: u32,
     /// What it is.
     pub kind: GlobalKind,
+    /// Of a uniform or storage variable: what the entry point reads of the struct, or of each element of the array.
+    pub reads: RowReads,
 }
 
 /// What a resource variable is.
@@ -211,6 +214,17 @@ pub struct Layout {
     pub members: Vec<Member>,
     /// It is a runtime-sized array, or a struct that ends with one.
     pub runtime_array: bool,
+}
+
+impl Layout {
+    /// A read of these members, by index.
+    pub(super) fn reads(&self, members: impl Iterator<Item = usize>) -> RowReads {
+        let end = |index: usize| self.members.get(index + 1).map_or(self.size, |next| next.offset);
+        let read = |index: usize| {
+            self.members.get(index).map(|member| ReadMember { offset: member.offset, end: end(index), name: member.name.clone() })
+        };
+        RowReads::Members(members.filter_map(read).collect())
+    }
 }
 
 /// A member of a struct.

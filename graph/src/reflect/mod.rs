@@ -18,6 +18,7 @@ mod io;
 mod limits;
 mod overrides;
 mod places;
+mod reads;
 mod text;
 mod tokens;
 mod types;

@@ -107,7 +107,9 @@ impl World {
         let inputs = self.tracker.inputs().iter();
         inputs
             .map(|input| {
-                (0..INPUTS as usize).find(|at| format!("{input:?}") == format!("Table(\"i{at}\")")).map_or(0, |at| self.revisions[at])
+                (0..INPUTS as usize)
+                    .find(|at| format!("{input:?}") == format!("Table(\"i{at}\", Whole)"))
+                    .map_or(0, |at| self.revisions[at])
             })
             .collect()
     }

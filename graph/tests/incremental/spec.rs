@@ -6,6 +6,7 @@ use luminaire_graph::bind::types::Bound;
 use luminaire_graph::expand::types::*;
 use luminaire_graph::format::Format;
 use luminaire_graph::plan::{Access, Input, InputId, PartView, Role, Step, StepIteration, StepKind, Use, Workgroups};
+use luminaire_graph::published::RowReads;
 use luminaire_graph::reflect::interface::ViewDimension;
 use luminaire_graph::source::Span;
 
@@ -334,7 +335,7 @@ impl Spec {
             formats,
             views: Vec::new(),
             draw_lists: Vec::new(),
-            inputs: (0..INPUTS).map(|input| Input::Table(format!("i{input}"))).collect(),
+            inputs: (0..INPUTS).map(|input| Input::Table(format!("i{input}"), RowReads::Whole)).collect(),
             requirements: Vec::new(),
         }
     }

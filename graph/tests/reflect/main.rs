@@ -5,5 +5,6 @@ mod errors;
 mod hostile;
 mod imports;
 mod interface;
+mod reads;
 mod stages;
 mod support;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use luminaire_graph::expand::types::{ClearValue, Dimension, PassId, ResourceId, Run, TextureShape};
 use luminaire_graph::format::Format;
 use luminaire_graph::plan::{
-    Binding, BindingTarget, ColorTarget, Input, InputId, Load, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement, Plan,
-    PlannedOutput, PlannedResource, PlannedShape, SampleType, Stages, Step, StepKind, Targets, Usage, Workgroups,
+    Binding, BindingTarget, ColorTarget, DrawReads, Input, InputId, Load, Memory, MemoryFigures, MemoryId, MemoryKind, PartView, Placement,
+    Plan, PlannedOutput, PlannedResource, PlannedShape, SampleType, Stages, Step, StepKind, Targets, Usage, Workgroups,
 };
-use luminaire_graph::published::{PublishedScene, PublishedSchema};
+use luminaire_graph::published::{PublishedScene, PublishedSchema, RowReads};
 use luminaire_graph::reflect::interface::{Shader, ViewDimension};
 use luminaire_graph::source::Span;
 use luminaire_passes::{Executor, Gpu, GpuOptions, ReadImage};
@@ -164,14 +164,18 @@ impl Builder {
         };
         for binding in &bindings {
             match &binding.target {
-                BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => takes(Input::Table(name.clone())),
+                BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => takes(Input::Table(name.clone(), RowReads::Whole)),
                 BindingTarget::View(view) => takes(Input::View(self.plan.views[*view])),
                 _ => {}
             }
         }
         if let StepKind::Draw { list, .. } = &kind {
             let (filter, view) = self.plan.draw_lists[*list];
-            takes(Input::Draws(filter, view));
+            let whole = |binding: &Binding| match &binding.target {
+                BindingTarget::StorageTable(name) => Some((name.clone(), RowReads::Whole)),
+                _ => None,
+            };
+            takes(Input::Draws(filter, view, DrawReads { rows: bindings.iter().filter_map(whole).collect(), textures: true }));
         }
         self.plan.steps.push(Step {
             pass: PassId(self.plan.steps.len() as u32),
