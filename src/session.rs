@@ -7,7 +7,7 @@ use luminaire_graph::compile::{Compilation, CompileInput, compile};
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::{Diagnostic, did_you_mean, has_errors};
 use luminaire_graph::plan::Plan;
-use luminaire_graph::published::SceneCounts;
+use luminaire_graph::published::{PublishedScene, SceneCounts};
 use luminaire_graph::source::SourceMap;
 use luminaire_passes::{Adapter, Executor, FrameStats, Gpu};
 use luminaire_scenes::publish::{PublishRequest, Published, Publisher, counts, schema};
@@ -260,6 +260,16 @@ impl Session {
     /// Whether some pass runs in every frame, so that the image never settles.
     pub fn never_settles(&self) -> bool {
         self.executor.never_settles()
+    }
+
+    /// What it runs.
+    pub fn plan(&self) -> &Plan {
+        &self.plan
+    }
+
+    /// What the world has published for it.
+    pub fn scene(&self) -> Arc<PublishedScene> {
+        self.executor.scene()
     }
 
     /// The passes that ran in the last frame, in order.

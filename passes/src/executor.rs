@@ -120,6 +120,11 @@ impl Executor {
         &self.plan
     }
 
+    /// The scene that it shows.
+    pub fn scene(&self) -> Arc<PublishedScene> {
+        Arc::clone(&self.scene)
+    }
+
     /// Takes another state of the scene over. Equal bytes cost a comparison, other bytes of equal length are written in place;
     /// bind groups are made anew only if a table changed its length or a texture changed, and other draw lists create only what
     /// they show for the first time. The scene must fit the same plan: it publishes the draw lists and views that the plan asks

@@ -23,7 +23,9 @@ pub(super) fn reach(position: DVec3, intensity: Vec3, range: Option<f32>, least:
     let farthest = |bounds: Option<Aabb>| bounds.map_or(0.0, |bounds| bounds.farthest(position));
     let fades = if least > 0.0 { (f64::from(intensity.max_element()) / f64::from(least)).sqrt() } else { f64::INFINITY };
     let end = if range.is_none() && fades < farthest(bounds) { fades } else { 0.0 };
-    let limit = range.map_or(if end > 0.0 { end } else { f64::INFINITY }, f64::from);
+    // A little stronger or weaker, and the shadow map stays as it is.
+    let fading = if end > 0.0 { round_up(end) } else { f64::INFINITY };
+    let limit = range.map_or(fading, f64::from);
     let planes = planes(farthest(solid), limit);
     Reach { end, casters: planes[1], planes }
 }
