@@ -77,7 +77,7 @@ const CHANGES: [(&str, &str, &str, &str); 7] = [
     ("the lamp is brighter", "candela: 3", "candela: 5", "shadows.local[0].opaque"),
     ("the sun is dimmer", "lux: 2", "lux: 1", "shadows.sun_opaque"),
     ("a ball moves", "translation: (-0.8, 0.6, 0)", "translation: (-0.7, 0.7, 0.1)", "nothing"),
-    ("a surface gets rougher", "roughness: 0.3", "roughness: 0.5", "nothing"),
+    ("a surface gets rougher", "roughness: 0.3", "roughness: 0.5", "shadows.sun_opaque"),
     ("the sky turns", "sky_radiance: (0.1, 0.2, 0.4)", "sky_radiance: (0.3, 0.2, 0.1)", "gbuffer"),
 ];
 
@@ -94,8 +94,8 @@ fn incremental_is_full() -> Result<(), Failed> {
 
 fn incremental_is_full_for_albedo() -> Result<(), Failed> {
     let shot = Shot::of(ALBEDO, [48, 48], &["color"]);
-    // Light is nothing to it.
-    let seen = ["the camera moves", "a ball moves", "a surface gets rougher", "size"];
+    // Light is nothing to it, and neither is roughness.
+    let seen = ["the camera moves", "a ball moves", "size"];
     replay(&shot, &["color"], &[("size", Shot { size: [40, 56], ..shot.clone() })], |what, ran, _| {
         if ran.is_empty() == seen.contains(&what) { Err(format!("{what}: ran {ran:?}").into()) } else { Ok(()) }
     })

@@ -2,8 +2,7 @@
 //!
 //! Opaque and masked objects are one call per material, mesh and orientation, in that order; what they look like
 //! depends on no order. Blended objects go back to front, by the distance of the middle of their bounds from the view, ties by slot;
-//! neighbours that agree in everything still share a call. The faces of a lamp's cube hold what they see ([`super::casters`]), all
-//! other lists of a filter hold the same objects.
+//! neighbours that agree in everything still share a call. A list holds what its view sees ([`super::visible`]).
 //!
 //! Kept from frame to frame: a list is made again if what stands in it may be other objects than before, or stand in another order.
 
@@ -13,10 +12,10 @@ use std::sync::Arc;
 use glam::DVec3;
 use luminaire_graph::published::{DrawBatch, DrawFilter, DrawList, Table, ViewKind};
 
-use super::casters::Casters;
 use super::geometry::MeshRange;
 use super::objects::{Changed, Coverage, Object, Objects};
 use super::projection::CameraView;
+use super::visible::Visible;
 
 /// How far an object is from a view.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -68,15 +67,15 @@ pub(super) struct DrawInput<'a> {
     pub(super) objects: &'a Objects,
     pub(super) changed: &'a Changed,
     pub(super) ranges: &'a [MeshRange],
-    pub(super) casters: &'a Casters,
-    /// Faces of lamps that see other objects than before.
-    pub(super) faces: &'a BTreeSet<(u32, u32)>,
+    pub(super) visible: &'a Visible,
+    /// Views that see other objects than before.
+    pub(super) views: &'a BTreeSet<ViewKind>,
 }
 
 impl Draws {
     /// The lists asked for, in that order.
     pub(super) fn update(&mut self, wanted: &[Name], input: &DrawInput<'_>, distance: impl Fn(ViewKind) -> Distance) -> Vec<DrawList> {
-        let names: BTreeSet<Name> = wanted.iter().copied().map(name).collect();
+        let names: BTreeSet<Name> = wanted.iter().copied().collect();
         let before = self.kept.len();
         self.kept.retain(|name, _| names.contains(name));
         let mut stand_elsewhere = self.kept.len() != before || self.slots.is_empty();
@@ -84,8 +83,7 @@ impl Draws {
             let kept = self.kept.entry(*name).or_default();
             let sorts = matches!(name.0, DrawFilter::Blended | DrawFilter::All);
             let by = Some(distance(name.1)).filter(|_| sorts);
-            let faces = matches!(name.1, ViewKind::LocalLight(lamp, face) if input.faces.contains(&(lamp, face)));
-            let stale = input.changed.keys || faces || (sorts && (input.changed.blended || kept.distance != by));
+            let stale = input.changed.keys || input.views.contains(&name.1) || (sorts && (input.changed.blended || kept.distance != by));
             if kept.placed.is_none() || stale {
                 kept.make(*name, input, by);
                 stand_elsewhere = true;
@@ -95,7 +93,7 @@ impl Draws {
             self.place();
         }
         let list = |(filter, view): &Name| {
-            let placed = self.kept.get(&name((*filter, *view))).and_then(|kept| kept.placed.as_ref());
+            let placed = self.kept.get(&(*filter, *view)).and_then(|kept| kept.placed.as_ref());
             DrawList { filter: *filter, view: *view, batches: placed.map(|(_, batches)| Arc::clone(batches)).unwrap_or_default() }
         };
         wanted.iter().map(list).collect()
@@ -126,12 +124,6 @@ impl Draws {
     }
 }
 
-/// Sorted by nothing but material and mesh, a list is the same from everywhere but from the faces of a lamp.
-fn name((filter, view): Name) -> Name {
-    let sorts = matches!(filter, DrawFilter::Blended | DrawFilter::All);
-    if sorts || matches!(view, ViewKind::LocalLight(..)) { (filter, view) } else { (filter, ViewKind::Camera) }
-}
-
 impl Kept {
     fn make(&mut self, (filter, view): Name, input: &DrawInput<'_>, by: Option<Distance>) {
         let stands = |object: &&Object| match filter {
@@ -141,10 +133,7 @@ impl Kept {
             DrawFilter::Blended => object.coverage == Coverage::Blended,
             DrawFilter::All => true,
         };
-        let seen = |object: &&Object| match view {
-            ViewKind::LocalLight(lamp, face) => input.casters.sees(lamp, face, object.slot),
-            ViewKind::Camera | ViewKind::DirectionalLight(_) => true,
-        };
+        let seen = |object: &&Object| input.visible.sees(view, object.slot);
         let (mut blended, solid): (Vec<&Object>, Vec<&Object>) =
             input.objects.in_order().filter(stands).filter(seen).partition(|object| object.coverage == Coverage::Blended);
         if let Some(by) = by {

@@ -78,6 +78,11 @@ fn strength(color: Vec3, intensity: f32) -> Vec3 {
 }
 
 impl Lights {
+    /// Where a directional light comes from; a light that is not there shines down.
+    pub(super) fn to_sun(&self, light: u32) -> DVec3 {
+        self.suns.get(light as usize).copied().flatten().map_or(DVec3::Y, |sun| sun.to_light)
+    }
+
     /// The table `directional_lights`; shadow members come from the first requested view of a light.
     pub(super) fn directional_rows(&self, camera: &CameraView, bounds: Option<Aabb>, views: &[ViewRequest]) -> Vec<DirectionalRow> {
         let row = |(index, sun): (usize, &Option<Sun>)| {

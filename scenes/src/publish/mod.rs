@@ -3,7 +3,8 @@
 //! Guarantees: equal worlds and requests give equal bytes, whatever was published before; tables follow stable slots, and none is empty;
 //! no published number is NaN. A [`Publisher`] that is asked again works on what changed, and shares all else with what it published
 //! before: geometry while no mesh comes, textures while images and materials stay, pages of tables, draw lists.
-//! Accepted downside: every object's ticks are looked at, lights are read anew, and directional lights see all objects.
+//! Accepted downside: every object's ticks are looked at, lights are read anew, and a view that moves tests the bounds of all
+//! objects.
 
 mod casters;
 mod counts;
@@ -11,6 +12,7 @@ mod coverage;
 mod cube;
 mod draws;
 mod environment;
+mod frustum;
 mod geometry;
 mod layout;
 mod lights;
@@ -25,6 +27,7 @@ mod schema;
 mod sun;
 mod texture_cache;
 mod textures;
+mod visible;
 
 #[cfg(test)]
 mod tests;

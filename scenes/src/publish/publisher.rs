@@ -9,14 +9,15 @@ use indexmap::IndexMap;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{PublishedScene, Table, ViewKind};
 
-use super::casters::Casters;
 use super::draws::{Distance, DrawInput, Draws};
+use super::frustum::Frustum;
 use super::geometry::{self, Geometry};
 use super::objects::Objects;
 use super::projection::CameraView;
 use super::request::{self, PublishRequest, Published};
 use super::texture_cache::TextureCache;
-use super::{environment, lights, materials};
+use super::visible::Visible;
+use super::{environment, lights, materials, sun};
 use crate::world::{Environment, Materials, Meshes, camera_pose, update};
 
 /// Publishes a world, and remembers what it published.
@@ -29,7 +30,7 @@ pub struct Publisher {
     geometry: Geometry,
     textures: TextureCache,
     objects: Objects,
-    casters: Casters,
+    visible: Visible,
     draws: Draws,
     tables: IndexMap<String, Table>,
 }
@@ -63,25 +64,31 @@ impl Publisher {
         let pose = camera_pose(world, request.camera, bounds, request.aspect()).map_err(|problem| problems.push(problem)).ok();
 
         let wanted = request.draw_lists;
-        let faces = self.casters.update(world, wanted.iter().map(|(_, view)| *view), &lights, &self.objects, &changed);
         let (Some(pose), true) = (pose, problems.is_empty()) else {
             // Lists were not brought up to date with what was taken over.
             *self = Publisher::default();
             return Err(problems);
         };
         let camera = CameraView::new(pose, request.aspect());
-        let input =
-            DrawInput { objects: &self.objects, changed: &changed, ranges: &self.geometry.ranges, casters: &self.casters, faces: &faces };
+        let solid = self.objects.solid_bounds;
+        let frusta = |view| match view {
+            ViewKind::DirectionalLight(light) => {
+                let to_light = lights.to_sun(light);
+                let maps = request.views.iter().filter(|request| request.kind == view);
+                maps.map(|map| sun::fit(to_light, &camera, solid, [map.width, map.height]).casters).collect()
+            }
+            ViewKind::Camera | ViewKind::LocalLight(..) => vec![Frustum::of_camera(&camera)],
+        };
+        let views = self.visible.update(world, &wanted.iter().map(|(_, view)| *view).collect(), frusta, &lights, &self.objects, &changed);
+        let (visible, ranges) = (&self.visible, &self.geometry.ranges);
+        let input = DrawInput { objects: &self.objects, changed: &changed, ranges, visible, views: &views };
         let draw_lists = self.draws.update(wanted, &input, |view| match view {
             ViewKind::Camera => Distance::from_camera(&camera),
-            ViewKind::DirectionalLight(light) => {
-                Distance::Along(lights.suns.get(light as usize).copied().flatten().map_or(-DVec3::Y, |sun| -sun.to_light))
-            }
+            ViewKind::DirectionalLight(light) => Distance::Along(-lights.to_sun(light)),
             ViewKind::LocalLight(light, _) => {
                 Distance::From(lights.lamps.get(light as usize).copied().flatten().map_or(DVec3::ZERO, |lamp| lamp.position))
             }
         });
-        let solid = self.objects.solid_bounds;
         let view_bytes = |view| bytemuck::bytes_of(&request::view_table(view, &camera, &lights, solid)).to_vec();
         let views = request.views.iter().map(view_bytes).collect();
         let environment = *world.get_resource_or_init::<Environment>();

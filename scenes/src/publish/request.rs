@@ -70,10 +70,7 @@ pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights) -> Vec<Diagno
 pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights, bounds: Option<Aabb>) -> ViewTable {
     match view.kind {
         ViewKind::Camera => camera.view(),
-        ViewKind::DirectionalLight(light) => {
-            let to_light = lights.suns.get(light as usize).copied().flatten().map_or(DVec3::Y, |sun| sun.to_light);
-            sun::fit(to_light, camera, bounds, [view.width, view.height]).table
-        }
+        ViewKind::DirectionalLight(light) => sun::fit(lights.to_sun(light), camera, bounds, [view.width, view.height]).table,
         ViewKind::LocalLight(light, face) => {
             let lamp = lights.lamps.get(light as usize).copied().flatten();
             let (position, planes) = lamp.map_or((DVec3::ZERO, [0.01, 1.0]), |lamp| (lamp.position, lamp.reach.planes));

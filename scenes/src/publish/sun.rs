@@ -8,19 +8,22 @@
 
 use glam::{DMat4, DVec3, DVec4};
 
+use super::frustum::Frustum;
 use super::layout::ViewTable;
 use super::projection::{CameraView, columns, single, vector};
 use super::reach::round_up;
 use crate::world::{Aabb, look_at};
 
 /// A fitted view.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone)]
 pub(super) struct SunView {
     pub(super) table: ViewTable,
     /// Metres along a texel (the larger one, should the map not be square).
     pub(super) texel_size: f64,
     /// Metres from depth 0 to depth 1.
     pub(super) depth_range: f64,
+    /// What can throw a shadow into it.
+    pub(super) casters: Frustum,
 }
 
 /// Fits a map of so many texels. `to_light` has unit length.
@@ -55,7 +58,7 @@ pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, te
         forward: vector(-back),
         far: single(range),
     };
-    SunView { table, texel_size: size[0].max(size[1]), depth_range: range }
+    SunView { table, texel_size: size[0].max(size[1]), depth_range: range, casters: Frustum::along([right, up], middle, half) }
 }
 
 /// The scene as the light sees it.

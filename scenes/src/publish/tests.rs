@@ -251,6 +251,13 @@ mod memory {
 
     use super::*;
 
+    /// Turns everything of a kind, and puts it elsewhere.
+    fn turn<C: bevy_ecs::component::Component>(world: &mut World, by: Vec3) {
+        for mut transform in world.query_filtered::<&mut Transform, bevy_ecs::prelude::With<C>>().iter_mut(world) {
+            transform.0 = Affine3A::from_rotation_translation(Quat::from_euler(glam::EulerRot::XYZ, by.x, by.y, by.z), by);
+        }
+    }
+
     fn change(world: &mut World, things: &mut Vec<Entity>, (what, which, at): (u8, usize, [f32; 3])) {
         let at = Vec3::from_array(at);
         let some = (!things.is_empty()).then(|| things[which % things.len().max(1)]);
@@ -275,6 +282,8 @@ mod memory {
             (8, _) => {
                 world.resource_mut::<Materials>().0[which % 4].alpha_mode = if at.x > 0.0 { AlphaMode::Blend } else { AlphaMode::Opaque }
             }
+            (13, _) => turn::<Camera>(world, at),
+            (14, _) => turn::<DirectionalLight>(world, at),
             (9, _) => world.resource_mut::<Meshes>().0.push(cuboid("more", at.abs() + 0.1, 0)),
             (10, _) => {
                 let lamp = LocalLight { color: Vec3::ONE, intensity: at.x.abs() * 0.01, range: (at.y > 0.0).then_some(at.y), cone: None };

@@ -17,7 +17,7 @@ const SCENE: &str = "(
         \"grey\": (base_color: (0.5, 0.5, 0.5)), \"leaf\": (base_color: (0.2, 0.6, 0.1)), \"glass\": (alpha: 0.5),
         \"red\": (base_color: (0.8, 0.1, 0.1)),
     },
-    cameras: { \"eye\": (position: (0, 1, 14), target: (0, 0, 0)) },
+    cameras: { \"eye\": (position: (0, 1, 14), target: (0, 0, 0), fov: 90) },
     groups: { \"turntable\": (translation: (0, 5, 0)) },
     lights: {
         \"sun\": Directional(lux: 10, direction: (-1, -2, -1)),
@@ -32,6 +32,7 @@ const SCENE: &str = "(
         \"between\": (shape: Box(size: (1, 1, 1)), material: \"red\"),
         \"leaf\": (shape: Box(size: (0.4, 0.1, 0.4)), material: \"leaf\", translation: (-10, 0.8, 0)),
         \"pane\": (shape: Box(size: (0.5, 0.1, 0.5)), material: \"glass\", translation: (-10, 1.0, 0)),
+        \"behind\": (shape: Box(size: (1, 1, 1)), material: \"grey\", translation: (0, 1, 150)),
         \"frame\": (shape: Box(size: (100, 0.1, 100)), material: \"grey\", translation: (0, -20, 0)),
     },
     timeline: [
@@ -65,6 +66,8 @@ const CHANGES: &[Change] = &[
     ("a pane, which throws no shadow", |world| place(world, "pane", [-10.1, 1.0, 0.0])),
     ("a box out of a lamp's reach", |world| place(world, "below second", [10.0, 0.0, -9.0])),
     ("a box into another one's", |world| place(world, "below second", [-10.0, 0.0, 0.8])),
+    ("a box behind the camera, which nothing sees", |world| place(world, "behind", [0.5, 1.0, 150.0])),
+    ("a box that comes into view", |world| place(world, "behind", [0.0, 1.0, -8.0])),
     ("the color of a material", |world| material(world, "red", |material| material.base_color = [0.1, 0.1, 0.8, 1.0])),
     ("the roughness of a material", |world| material(world, "grey", |material| material.roughness = 0.4)),
     ("what a leaf's material cuts out", |world| material(world, "leaf", |material| material.alpha_mode = AlphaMode::Mask { cutoff: 0.25 })),
