@@ -52,6 +52,12 @@ pub fn srgb_encode(linear: f32) -> f32 {
     if linear <= 0.003_130_8 { linear * 12.92 } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
 }
 
+/// The inverse of [`srgb_encode`].
+pub fn srgb_decode(encoded: f32) -> f32 {
+    let encoded = encoded.clamp(0.0, 1.0);
+    if encoded <= 0.040_45 { encoded / 12.92 } else { ((encoded + 0.055) / 1.055).powf(2.4) }
+}
+
 /// Writes an image; the extension decides the format. Values that are not numbers become black in a PNG and stay in an EXR.
 pub fn write_image(path: &Path, picture: &LinearImage) -> Result<(), Diagnostic> {
     let mut bytes = Vec::new();
@@ -170,6 +176,16 @@ fn unwritable(path: &Path, folder: &Path, error: &std::io::Error) -> Diagnostic 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn eight_bits_come_back() {
+        for value in 0..=255_u8 {
+            let there = srgb_decode(f32::from(value) / 255.0);
+            assert_eq!((srgb_encode(there) * 255.0).round() as u8, value);
+        }
+        // IEC 61966-2-1: the middle of the code is about a fifth of the light.
+        assert!((srgb_decode(0.5) - 0.214_041).abs() < 1e-6);
+    }
 
     #[test]
     fn what_nobody_writes_any_more_is_swept() {

@@ -7,7 +7,7 @@ use std::path::Path;
 
 use libtest_mimic::{Arguments, Failed, Trial};
 use luminaire::passes::Adapter;
-use support::program::{luminaire, refused, run};
+use support::program::{done, luminaire, refused, run};
 use support::{shared, trial};
 
 fn bad_input() -> Result<(), Failed> {
@@ -102,6 +102,57 @@ fn scenes() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
     refused(&["scene", "scenes/nowhere_to_be_found.ron"], &["scene::unreadable", "scenes/cornell.ron"], folder.path())?;
     refused(&["scene", scene, "--time", "nan"], &["world::bad-time"], folder.path())
+}
+
+/// Images side by side keep their pixels; what is no image, or of another size, is named.
+fn sheets() -> Result<(), Failed> {
+    let (folder, empty) = (tempfile::tempdir()?, tempfile::tempdir()?);
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let write = |name: &str, width: u32, shade: u8| {
+        image::RgbImage::from_fn(width, 4, |x, y| image::Rgb([shade, x as u8, y as u8])).save(folder.path().join(name))
+    };
+    for (name, width, shade) in [("0.png", 6, 0), ("1.png", 6, 100), ("2.png", 6, 200), ("wide.png", 7, 0)] {
+        write(name, width, shade)?;
+    }
+    std::fs::write(path("text.png"), "no image")?;
+    let (a, b, c, wide, text, out) = (path("0.png"), path("1.png"), path("2.png"), path("wide.png"), path("text.png"), path("out.png"));
+    done(&["sheet", &a, &b, &c, "-o", &out, "--columns", "2"])?;
+    let sheet = image::open(&out)?.into_rgb8();
+    if sheet.dimensions() != (16, 12) {
+        return Err(format!("the sheet has {:?} pixels", sheet.dimensions()).into());
+    }
+    for (x, y, pixel) in sheet.enumerate_pixels() {
+        let expected = match ((x, y), x % 10, y % 8) {
+            ((10.., 8..), ..) | (_, 6.., _) | (_, _, 4..) => [255; 3],
+            (_, u, v) => [
+                if x >= 10 {
+                    100
+                } else if y >= 8 {
+                    200
+                } else {
+                    0
+                },
+                u as u8,
+                v as u8,
+            ],
+        };
+        if pixel.0 != expected {
+            return Err(format!("({x}, {y}) is {pixel:?} and not {expected:?}").into());
+        }
+    }
+    done(&["sheet", &a, &b, "-o", &out, "--shrink", "2"])?;
+    let small = image::open(&out)?.into_rgb8().dimensions();
+    if small != (10, 2) {
+        return Err(format!("two images of 3 by 2 make {small:?}").into());
+    }
+    let bad = empty.path().join("bad.png").display().to_string();
+    refused(
+        &["sheet", &a, &wide, &text, &path("none.png"), "-o", &bad],
+        &["sheet::sizes", "wide.png", "text.png", "none.png"],
+        empty.path(),
+    )?;
+    refused(&["sheet", &a, "-o", &bad, "--shrink", "5"], &["sheet::too-small", "6 x 4"], empty.path())?;
+    refused(&["sheet", &a, "-o", &bad.replace(".png", ".exr")], &["output::format"], empty.path())
 }
 
 /// Wrong usage is status 2, before anything is loaded.
@@ -297,6 +348,7 @@ fn main() {
         trial("bad input is refused", adapter, bad_input),
         trial("wrong paths are explained", None, wrong_paths),
         trial("scenes are described", None, scenes),
+        trial("sheets show images side by side", None, sheets),
         trial("wrong usage is status 2", None, usage),
         trial("damaged files are read or refused", None, damaged_files),
         trial("a missing adapter is explained", None, no_adapter),

@@ -62,7 +62,7 @@ fn largest_excess(shape: &TextureShape, facts: &DeviceFacts) -> Option<(&'static
 /// What the published scene takes on the device, near enough.
 fn scene_bytes(scene: &PublishedScene) -> u64 {
     let tables = scene.tables.values().map(Table::len).chain(scene.views.iter().map(Vec::len));
-    let textures = scene.materials.textures.iter().flat_map(|texture| texture.mips.iter().map(Vec::len));
+    let textures = scene.materials.textures.iter().flat_map(|texture| texture.mips.iter().map(|mip| mip.len()));
     let rest = [scene.geometry.vertices.len(), scene.geometry.indices.len().saturating_mul(4)];
     tables.chain(textures).chain(rest).fold(0, |sum, bytes| sum.saturating_add(bytes as u64))
 }

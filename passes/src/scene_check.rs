@@ -138,7 +138,7 @@ mod tests {
     use super::*;
 
     fn texture(width: u32, mips: &[usize]) -> PublishedTexture {
-        let mips = mips.iter().map(|bytes| vec![0; *bytes]).collect();
+        let mips = mips.iter().map(|bytes| vec![0; *bytes].into()).collect();
         PublishedTexture { name: "brick".to_owned(), srgb: false, width, height: 2, mips }
     }
 

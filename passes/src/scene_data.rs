@@ -251,7 +251,7 @@ impl SceneData {
             let stands = standing.next().filter(|_| old.textures.get(index).is_some_and(|old| same_texture(old, texture)));
             self.textures.push(stands.unwrap_or_else(|| {
                 created = true;
-                waiting += texture.mips.iter().map(Vec::len).sum::<usize>();
+                waiting += texture.mips.iter().map(|mip| mip.len()).sum::<usize>();
                 if waiting > UPLOAD_BATCH {
                     gpu.queue.submit(None);
                     waiting = 0;

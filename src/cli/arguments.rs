@@ -41,6 +41,8 @@ pub(crate) enum Command {
     Explain(ExplainArguments),
     /// Show what a scene holds: nodes, meshes, materials, lights, cameras, timeline, bounds, memory
     Scene(SceneArguments),
+    /// Put images side by side into one, to see a sequence at a glance
+    Sheet(SheetArguments),
     /// Show the adapter, its limits, and what comes with the program
     Info,
 }
@@ -177,6 +179,22 @@ pub(crate) struct SceneArguments {
     /// Show the scene at this time, in seconds; as it was loaded, if not given
     #[arg(long, value_name = "SECONDS")]
     pub time: Option<f64>,
+}
+
+#[derive(Debug, Args)]
+pub(crate) struct SheetArguments {
+    /// The images, row by row: .png files of one size
+    #[arg(required = true, value_name = "IMAGE")]
+    pub images: Vec<PathBuf>,
+    /// The sheet to write, a .png
+    #[arg(short = 'o', value_name = "FILE")]
+    pub file: PathBuf,
+    /// Images in a row; about as many as there are rows, if not given
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
+    pub columns: Option<u32>,
+    /// Make the images smaller by this factor: each pixel is the mean of N by N
+    #[arg(long, value_name = "N", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..=64))]
+    pub shrink: u32,
 }
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -11,6 +11,7 @@ mod progress;
 mod render;
 mod scene;
 mod sequence;
+mod sheet;
 mod stats;
 mod target;
 
@@ -32,6 +33,7 @@ pub fn run() -> ExitCode {
         Command::Plan(arguments) => plan::run(arguments),
         Command::Explain(arguments) => explain::run(arguments),
         Command::Scene(arguments) => scene::run(arguments),
+        Command::Sheet(arguments) => sheet::run(arguments),
         Command::Info => info::run(),
     };
     if done { ExitCode::SUCCESS } else { ExitCode::FAILURE }

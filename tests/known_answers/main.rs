@@ -13,6 +13,7 @@ mod changes;
 mod irradiance;
 mod masks;
 mod materials;
+mod noon;
 mod orientation;
 mod runs;
 mod shadows;
@@ -27,12 +28,13 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 10] = [
+    let groups: [&[Case]; 11] = [
         brdf::CASES,
         changes::CASES,
         irradiance::CASES,
         masks::CASES,
         materials::CASES,
+        noon::CASES,
         orientation::CASES,
         runs::CASES,
         shadows::CASES,

@@ -72,8 +72,8 @@ pub struct PublishedTexture {
     pub width: u32,
     /// Of level 0.
     pub height: u32,
-    /// Level by level, tightly packed rows.
-    pub mips: Vec<Vec<u8>>,
+    /// Level by level, tightly packed rows. Level 0 may be shared with whoever has the image.
+    pub mips: Vec<Arc<[u8]>>,
 }
 
 /// Filtering and addressing.

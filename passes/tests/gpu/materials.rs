@@ -31,7 +31,7 @@ struct Varyings { @builtin(position) at: vec4<f32>, @location(0) slot: f32 }
 }";
 
 fn texture(color: [u8; 4], srgb: bool) -> Arc<PublishedTexture> {
-    let mips = vec![color.repeat(4), color.to_vec()];
+    let mips = vec![color.repeat(4).into(), color.into()];
     Arc::new(PublishedTexture { name: "color".to_owned(), srgb, width: 2, height: 2, mips })
 }
 

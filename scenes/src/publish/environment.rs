@@ -9,8 +9,10 @@ use super::lights::Lights;
 use crate::asset::Material;
 use crate::world::{Aabb, Environment};
 
-/// Brightest radiance that is kept in units of 1: a half float ends at 65,504, which leaves six octaves for highlights.
-const MODEST: f64 = 1000.0;
+/// Brightest radiance that is kept in units of 1. A half float ends at 65,504, which leaves ten octaves for highlights: the lobe of
+/// GGX is 1 / (4 alpha^2) times as bright as white (roughness 0.125), and more where light grazes. Below, there are twenty octaves
+/// until a half float loses digits.
+const MODEST: f64 = 64.0;
 
 /// The table for these lights.
 pub(super) fn table(environment: Environment, lights: &Lights, materials: &[Material], bounds: Option<Aabb>) -> EnvironmentTable {
@@ -37,7 +39,7 @@ fn brightest(sky: Vec3, lights: &Lights, materials: &[Material], bounds: Option<
     suns.chain(lamps).chain(emission).fold(f64::from(sky.max_element()), f64::max)
 }
 
-/// 1 up to a radiance of 1000, beyond that the power of two that brings it down to 1000 or less.
+/// 1 up to a radiance of 64, beyond that the power of two that brings it down to 64 or less.
 fn light_unit(brightest: f64) -> f32 {
     if brightest.is_nan() || brightest <= MODEST {
         return 1.0;
@@ -52,10 +54,10 @@ mod tests {
     #[test]
     fn the_unit_is_a_power_of_two_that_leaves_headroom() {
         assert_eq!(light_unit(0.0), 1.0);
-        assert_eq!(light_unit(1000.0), 1.0);
+        assert_eq!((light_unit(64.0), light_unit(1000.0)), (1.0, 16.0));
         assert_eq!(light_unit(f64::NAN), 1.0);
         // The sun at noon, 100,000 lx.
-        assert_eq!(light_unit(100_000.0 / PI), 32.0);
+        assert_eq!(light_unit(100_000.0 / PI), 512.0);
         for exponent in 0..30 {
             let brightest = 3.7 * f64::from(exponent).exp2();
             let unit = f64::from(light_unit(brightest));

@@ -6,6 +6,8 @@
 //! Accepted downside: roughness is averaged as it is. What normals lose in length is not added to it, so glossy bumpy
 //! surfaces look smoother from afar than they are.
 
+use std::sync::Arc;
+
 use super::coverage;
 use crate::asset::Image;
 
@@ -34,13 +36,13 @@ impl Role {
     }
 }
 
-/// An image with its levels, down to one texel.
+/// An image with its levels, down to one texel. Level 0 is the image itself, and not copied.
 #[derive(Debug, Clone)]
 pub(super) struct Levels {
     /// Of level 0, at most the limit asked for.
     pub(super) width: u32,
     pub(super) height: u32,
-    pub(super) bytes: Vec<Vec<u8>>,
+    pub(super) bytes: Vec<Arc<[u8]>>,
 }
 
 /// Filtered texels: four numbers each, in the role's space.
@@ -61,7 +63,7 @@ pub(super) fn build(image: &Image, role: Role, max_edge: u32) -> Levels {
     let max_edge = max_edge.max(1);
     let fits = |width: u32, height: u32| width.max(height) <= max_edge;
     if fits(image.width, image.height) {
-        levels.bytes.push(image.rgba.to_vec());
+        levels.bytes.push(Arc::clone(&image.rgba));
     }
     let mut above: Option<Level> = None;
     let (mut width, mut height) = (image.width, image.height);
@@ -76,7 +78,7 @@ pub(super) fn build(image: &Image, role: Role, max_edge: u32) -> Levels {
             if levels.bytes.is_empty() {
                 (levels.width, levels.height) = (width, height);
             }
-            levels.bytes.push(space.encode(&level.texels, wanted_coverage));
+            levels.bytes.push(space.encode(&level.texels, wanted_coverage).into());
         }
         above = Some(level);
     }
@@ -229,8 +231,8 @@ mod tests {
     #[test]
     fn black_and_white_meet_in_linear_light() {
         let checker = image(2, 2, |x, y| if (x + y) % 2 == 0 { [255; 4] } else { [0, 0, 0, 255] });
-        assert_eq!(build(&checker, Role::Color, 8192).bytes[1], [188, 188, 188, 255], "half the light is sRGB 188");
-        assert_eq!(build(&checker, Role::Data, 8192).bytes[1], [128, 128, 128, 255]);
+        assert_eq!(build(&checker, Role::Color, 8192).bytes[1][..], [188, 188, 188, 255], "half the light is sRGB 188");
+        assert_eq!(build(&checker, Role::Data, 8192).bytes[1][..], [128, 128, 128, 255]);
     }
 
     proptest! {
@@ -285,7 +287,7 @@ mod tests {
         let [r, g, b, a] = build(&leaf, Role::Blended, 8192).bytes[1][..] else { panic!("one texel") };
         assert!(r < 10 && g.abs_diff(200) <= 1 && b < 10 && a == 128, "{r} {g} {b} {a}");
         let clear = build(&image(2, 2, |_, _| [90, 60, 30, 0]), Role::Blended, 8192);
-        assert_eq!(clear.bytes[1], [90, 60, 30, 0]);
+        assert_eq!(clear.bytes[1][..], [90, 60, 30, 0]);
     }
 
     #[test]

@@ -129,7 +129,7 @@ fn tables_fit_the_schema_and_follow_slots() {
     assert_eq!(rows.len(), 10);
     assert_eq!((rows[3].normal_from_object_0[3], rows[3].object, rows[5].material), (-1.0, 3, 2));
     let environment: Vec<EnvironmentTable> = table_rows(&published, "environment");
-    assert_eq!((environment[0].light_unit, environment[0].directional_count, environment[0].local_count), (32.0, 1, 1));
+    assert_eq!((environment[0].light_unit, environment[0].directional_count, environment[0].local_count), (512.0, 1, 1));
     let suns: Vec<DirectionalRow> = table_rows(&published, "directional_lights");
     let view: &ViewTable = bytemuck::from_bytes(&published.scene.views[1]);
     assert_eq!(suns[0].shadow_from_world, view.projection_from_world);

@@ -124,7 +124,7 @@ fn build_levels(jobs: &[(usize, Role)], images: &[Image], max_edge: u32) -> Vec<
 }
 
 fn single(name: &str, texel: [u8; 4]) -> Arc<PublishedTexture> {
-    Arc::new(PublishedTexture { name: name.to_owned(), srgb: false, width: 1, height: 1, mips: vec![texel.to_vec()] })
+    Arc::new(PublishedTexture { name: name.to_owned(), srgb: false, width: 1, height: 1, mips: vec![texel.into()] })
 }
 
 fn sampler(sampler: Sampler) -> PublishedSampler {

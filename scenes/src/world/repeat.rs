@@ -5,7 +5,7 @@
 pub enum Repeat {
     /// Once; it then stays at its end.
     Once,
-    /// From the beginning again and again. The end itself is the beginning.
+    /// From the beginning again and again. At the end of a round it stands at its end, and goes on from its beginning.
     #[default]
     Loop,
     /// Forwards and backwards in turn.
@@ -23,7 +23,11 @@ impl Repeat {
         }
         match self {
             Repeat::Once => at.clamp(0.0, duration),
-            Repeat::Loop => at.rem_euclid(duration),
+            Repeat::Loop => {
+                // The moment between two rounds belongs to the one that ends, so that what is timed by the last key shows it.
+                let turn = at.rem_euclid(duration);
+                if turn == 0.0 && at > 0.0 { duration } else { turn }
+            }
             Repeat::PingPong => {
                 let turn = at.rem_euclid(2.0 * duration);
                 if turn > duration { (2.0 * duration - turn).max(0.0) } else { turn }
@@ -40,11 +44,11 @@ mod tests {
     fn phases_by_hand() {
         let forwards = |repeat: Repeat| [-1.0, 0.0, 1.5, 2.0, 3.0, 4.5].map(|elapsed| repeat.phase(elapsed, 1.0, 2.0));
         assert_eq!(forwards(Repeat::Once), [0.0, 0.0, 1.5, 2.0, 2.0, 2.0]);
-        assert_eq!(forwards(Repeat::Loop), [0.0, 0.0, 1.5, 0.0, 1.0, 0.5]);
+        assert_eq!(forwards(Repeat::Loop), [0.0, 0.0, 1.5, 2.0, 1.0, 0.5]);
         assert_eq!(forwards(Repeat::PingPong), [0.0, 0.0, 1.5, 2.0, 1.0, 0.5]);
         let backwards = |repeat: Repeat| [-1.0, 0.0, 0.5, 1.0, 1.5].map(|elapsed| repeat.phase(elapsed, -2.0, 2.0));
         assert_eq!(backwards(Repeat::Once), [2.0, 2.0, 1.0, 0.0, 0.0]);
-        assert_eq!(backwards(Repeat::Loop), [0.0, 0.0, 1.0, 0.0, 1.0]);
+        assert_eq!(backwards(Repeat::Loop), [2.0, 2.0, 1.0, 0.0, 1.0]);
         assert_eq!(backwards(Repeat::PingPong), [2.0, 2.0, 1.0, 0.0, 1.0]);
     }
 
