@@ -44,7 +44,7 @@ pub use repeat::Repeat;
 pub use resources::{Environment, Images, Materials, Meshes, new_world};
 pub use slots::assign_slots;
 pub(crate) use solid::solid_meshes;
-pub use spatial::{Kind, SpatialIndex};
+pub use spatial::{Holds, Kind, OrientedBox, SpatialIndex};
 pub use spawn::{StoredAsset, spawn_asset, spawn_stored, store_asset};
 pub use transform::propagate_transforms;
 pub use triangles::{Hit, Triangles};
