@@ -111,11 +111,17 @@ pub fn did_you_mean<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -
     nearest(wrong, known).map(|name| format!("did you mean `{name}`?"))
 }
 
+/// Longer names are no slips of a person, and comparing them takes the product of their lengths.
+const LONGEST_SLIP: usize = 200;
+
 /// The nearest known name, if it is near enough to be a slip.
 pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
-    let limit = (wrong.chars().count() / 3).max(2);
+    let length = wrong.chars().take(LONGEST_SLIP + 1).count();
+    let limit = (length / 3).max(2);
+    let may_be_near = |name: &&str| length <= LONGEST_SLIP && name.chars().take(length + limit + 1).count().abs_diff(length) <= limit;
     known
         .into_iter()
+        .filter(may_be_near)
         .map(|name| {
             let distance = if name.eq_ignore_ascii_case(wrong) { 0 } else { strsim::osa_distance(wrong, name) };
             (distance, name)
@@ -125,13 +131,18 @@ pub fn nearest<'a>(wrong: &str, known: impl IntoIterator<Item = &'a str>) -> Opt
         .map(|(_, name)| name)
 }
 
-/// A comma-separated list of names in backquotes, cut after twelve.
+/// A comma-separated list of names in backquotes, cut after twelve; long ones are cut, too.
 pub fn list_names<'a>(names: impl IntoIterator<Item = &'a str>) -> String {
-    let names: Vec<String> = names.into_iter().map(|name| format!("`{name}`")).collect();
-    match names.len() {
-        0 => "none".to_owned(),
-        1..=12 => names.join(", "),
-        count => format!("{}, and {} more", names[..12].join(", "), count - 12),
+    let mut names = names.into_iter();
+    let clip = |name: &str| match name.char_indices().nth(LONGEST_SLIP) {
+        Some((end, _)) => format!("`{}...`", name.get(..end).unwrap_or_default()),
+        None => format!("`{name}`"),
+    };
+    let shown: Vec<String> = names.by_ref().take(12).map(clip).collect();
+    match (shown.len(), names.count()) {
+        (0, _) => "none".to_owned(),
+        (_, 0) => shown.join(", "),
+        (_, more) => format!("{}, and {more} more", shown.join(", ")),
     }
 }
 

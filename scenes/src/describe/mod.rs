@@ -14,7 +14,10 @@ use serde::Serialize;
 
 use crate::publish::counts;
 use crate::timeline::Timeline;
-use crate::world::{Environment, Images, Materials, MeshInstance, Meshes, Time, propagate_transforms, scene_bounds, update_bounds};
+use crate::world::{
+    Environment, Images, Materials, MeshInstance, Meshes, Shown, Time, propagate_transforms, propagate_visibility, scene_bounds,
+    update_bounds,
+};
 
 /// A scene in words and numbers. Lengths in metres, angles in degrees, colours linear Rec.709.
 #[derive(Debug, Clone, PartialEq, Serialize)]
@@ -29,7 +32,7 @@ pub struct Description {
     pub meshes: usize,
     /// Triangles of the different meshes.
     pub stored_triangles: u64,
-    /// Triangles that are drawn: those of every instance.
+    /// Triangles that are drawn: those of every instance that is not hidden.
     pub drawn_triangles: u64,
     /// Decoded images.
     pub images: usize,
@@ -85,9 +88,11 @@ pub struct Event {
 /// Describes a world as it is now.
 pub fn describe(world: &mut World) -> Description {
     propagate_transforms(world);
+    propagate_visibility(world);
     update_bounds(world);
     let bounds = scene_bounds(world).map(|bounds| [bounds.min.to_array(), bounds.max.to_array()]);
-    let instances: Vec<MeshInstance> = world.query::<&MeshInstance>().iter(world).copied().collect();
+    let instances: Vec<(MeshInstance, bool)> =
+        world.query::<(&MeshInstance, &Shown)>().iter(world).map(|(instance, shown)| (*instance, shown.0)).collect();
     let nodes = nodes::nodes(world);
     let counts = counts(world).into_iter().collect();
     let meshes = world.get_resource::<Meshes>().map_or(&[][..], |meshes| &meshes.0);
@@ -95,7 +100,7 @@ pub fn describe(world: &mut World) -> Description {
     let materials = world.get_resource::<Materials>().map_or(&[][..], |materials| &materials.0);
     let images = world.get_resource::<Images>().map_or(&[][..], |images| &images.0);
     let mut used_by = vec![0; materials.len()];
-    for instance in &instances {
+    for (instance, _) in &instances {
         if let Some(count) = used_by.get_mut(instance.material) {
             *count += 1;
         }
@@ -111,7 +116,7 @@ pub fn describe(world: &mut World) -> Description {
         materials: materials.iter().zip(used_by).map(describe).collect(),
         meshes: meshes.len(),
         stored_triangles: (0..meshes.len()).map(triangles).sum(),
-        drawn_triangles: instances.iter().map(|instance| triangles(instance.mesh)).sum(),
+        drawn_triangles: instances.iter().filter(|(_, shown)| *shown).map(|(instance, _)| triangles(instance.mesh)).sum(),
         images: images.len(),
         counts,
         sky: world.get_resource::<Environment>().map_or([0.0; 3], |environment| environment.sky_radiance.to_array()),

@@ -7,8 +7,8 @@ use super::Node;
 use super::text::{color, number, seconds, vector};
 use crate::asset::Projection;
 use crate::world::{
-    AnimationPlayer, Camera, CameraPath, ChildOf, Children, DirectionalLight, Exposure, Fly, GlobalTransform, LocalLight, Materials,
-    MeshInstance, Meshes, Name, Orbit, ProbeVolume, RectangleLight, ReflectionProbe, Repeat, Transform, Volume,
+    AnimationPlayer, Camera, CameraPath, ChildOf, Children, DirectionalLight, Exposure, Fly, GlobalTransform, Hidden, LocalLight,
+    Materials, MeshInstance, Meshes, Name, Orbit, ProbeVolume, RectangleLight, ReflectionProbe, Repeat, Transform, Volume,
 };
 
 /// All nodes, each behind its parent; siblings in the order in which they came.
@@ -32,6 +32,9 @@ pub(super) fn nodes(world: &mut World) -> Vec<Node> {
 
 fn parts(world: &World, entity: Entity) -> Vec<String> {
     let mut parts = Vec::new();
+    if world.get::<Hidden>(entity).is_some() {
+        parts.push("hidden".to_owned());
+    }
     if let Some(camera) = world.get::<Camera>(entity) {
         parts.push(camera_text(camera));
     }

@@ -23,6 +23,7 @@ fn action(timeline: &Timeline, materials: &[Material], action: &Action) -> Strin
             format!("spawn {}", names.join(", "))
         }
         Action::Animate { node, play } => format!("play clip {} of `{}`", play.clip, timeline.name(*node)),
+        Action::Show { node, shown } => format!("{} `{}`", if *shown { "show" } else { "hide" }, timeline.name(*node)),
         Action::Remove(node) => format!("remove `{}`", timeline.name(*node)),
         Action::Reparent { node, parent, keep_place } => {
             let parent = parent.map_or_else(|| "the world".to_owned(), |parent| format!("`{}`", timeline.name(parent)));

@@ -169,6 +169,32 @@ mod tests {
     }
 
     #[test]
+    fn bytes_in_memory_name_no_files() {
+        let (dir, _folder) = folder();
+        let absolute = dir.path().join("secret.bin").display().to_string();
+        let zeros = format!("data:;base64,{}", "A".repeat(48));
+        // Both exist: tests run in the folder of the crate.
+        assert!(std::fs::exists("Cargo.toml").unwrap() && std::fs::exists(&absolute).unwrap());
+        let text = |buffer: &str, image: &str| {
+            format!(
+                r#"{{ "asset": {{ "version": "2.0" }}, "scenes": [{{ "nodes": [0] }}], "nodes": [{{ "mesh": 0 }}],
+                "buffers": [{{ "byteLength": 36, "uri": "{buffer}" }}], "bufferViews": [{{ "buffer": 0, "byteLength": 36 }}],
+                "images": [{{ "uri": "{image}" }}], "textures": [{{ "source": 0 }}],
+                "materials": [{{ "emissiveTexture": {{ "index": 0 }} }}],
+                "accessors": [{{ "bufferView": 0, "componentType": 5126, "count": 3, "type": "VEC3" }}],
+                "meshes": [{{ "primitives": [{{ "attributes": {{ "POSITION": 0 }}, "material": 0 }}] }}] }}"#
+            )
+        };
+        for uri in [absolute.as_str(), "Cargo.toml", "./Cargo.toml", "file:///etc/hosts", "src/../Cargo.toml"] {
+            for (buffer, image) in [(uri, "data:image/png;base64,AAAA"), (zeros.as_str(), uri)] {
+                let problems = crate::gltf::load_bytes("memory.gltf", text(buffer, image).as_bytes()).unwrap_err();
+                let said = problems.iter().any(|problem| problem.message.contains("only data URIs are read where there is no folder"));
+                assert!(said, "{uri}: {problems:?}");
+            }
+        }
+    }
+
+    #[test]
     fn a_wider_root_allows_neighbours() {
         let (dir, _) = folder();
         let folder = Folder::of(&dir.path().join("inner/file.gltf"), Some(dir.path())).unwrap();

@@ -8,7 +8,8 @@ use super::schema::COUNT_NAMES;
 use crate::world::{DirectionalSlot, LocalLight, LocalSlot, Materials, MeshInstance};
 
 /// The counts, under [`COUNT_NAMES`]. `directional_lights` and `local_lights` are the rows of the tables, as loops over them
-/// need: a slot that was freed below others in use still counts. All others are entities.
+/// need: a slot that was freed below others in use still counts. All others are entities, hidden ones among them, so that no plan has
+/// to be made anew for what is hidden and shown.
 pub fn counts(world: &World) -> SceneCounts {
     let directional = world.try_query::<&DirectionalSlot>().and_then(|mut query| query.iter(world).map(|slot| slot.0 + 1).max());
     let local = world.try_query::<&LocalSlot>().and_then(|mut query| query.iter(world).map(|slot| slot.0 + 1).max());

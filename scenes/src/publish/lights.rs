@@ -1,6 +1,6 @@
 //! Lights of the world, in the order of their slots, and their tables.
 //!
-//! A slot that nobody holds is a light without strength, so that the lights after it keep their index.
+//! A slot that nobody holds, or something hidden, is a light without strength, so that the lights after it keep their index.
 
 use bevy_ecs::prelude::World;
 use glam::{DVec3, Vec3};
@@ -10,7 +10,7 @@ use super::layout::{DirectionalRow, LocalRow};
 use super::projection::{CameraView, single, vector};
 use super::reach::{Reach, reach};
 use super::sun;
-use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, Environment, GlobalTransform, LocalLight, LocalSlot, rigid_axes};
+use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, Environment, GlobalTransform, LocalLight, LocalSlot, Shown, rigid_axes};
 
 /// A directional light in world space.
 #[derive(Debug, Clone, Copy)]
@@ -46,11 +46,12 @@ pub(super) struct Lights {
 pub(super) fn collect(world: &mut World, bounds: Option<Aabb>, solid: Option<Aabb>) -> Lights {
     let mut lights = Lights::default();
     let least = world.get_resource_or_init::<Environment>().least_illuminance;
-    for (light, slot, transform) in world.query::<(&DirectionalLight, &DirectionalSlot, &GlobalTransform)>().iter(world) {
+    for (light, slot, transform, shown) in world.query::<(&DirectionalLight, &DirectionalSlot, &GlobalTransform, &Shown)>().iter(world) {
         let (.., back) = rigid_axes(transform.0.matrix3);
-        place(&mut lights.suns, slot.0, Sun { to_light: back, illuminance: strength(light.color, light.illuminance) });
+        let sun = Sun { to_light: back, illuminance: strength(light.color, light.illuminance) };
+        place(&mut lights.suns, slot.0, Some(sun).filter(|_| shown.0));
     }
-    for (light, slot, transform) in world.query::<(&LocalLight, &LocalSlot, &GlobalTransform)>().iter(world) {
+    for (light, slot, transform, shown) in world.query::<(&LocalLight, &LocalSlot, &GlobalTransform, &Shown)>().iter(world) {
         let (.., back) = rigid_axes(transform.0.matrix3);
         let position = Vec3::from(transform.0.translation);
         let finite = position.is_finite();
@@ -59,17 +60,17 @@ pub(super) fn collect(world: &mut World, bounds: Option<Aabb>, solid: Option<Aab
         let range = light.range.filter(|range| range.is_finite() && *range > 0.0);
         let reach = reach(position, intensity, range, least, bounds, solid);
         let lamp = Lamp { position, axis: -back, intensity, range, cone: light.cone, reach };
-        place(&mut lights.lamps, slot.0, lamp);
+        place(&mut lights.lamps, slot.0, Some(lamp).filter(|_| shown.0));
     }
     lights
 }
 
-fn place<T: Clone>(list: &mut Vec<Option<T>>, slot: u32, light: T) {
+fn place<T: Clone>(list: &mut Vec<Option<T>>, slot: u32, light: Option<T>) {
     let slot = slot as usize;
     if list.len() <= slot {
         list.resize(slot + 1, None);
     }
-    list[slot] = Some(light);
+    list[slot] = light;
 }
 
 fn strength(color: Vec3, intensity: f32) -> Vec3 {

@@ -10,7 +10,7 @@ use luminaire_graph::published::Table;
 
 use super::layout::InstanceRow;
 use crate::asset::{AlphaMode, Material};
-use crate::world::{Aabb, GlobalTransform, MeshInstance, ObjectSlot, WorldBounds, solid_meshes};
+use crate::world::{Aabb, GlobalTransform, MeshInstance, ObjectSlot, Shown, WorldBounds, solid_meshes};
 
 /// How an object's surface covers what is behind it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
@@ -74,7 +74,7 @@ impl Object {
 /// See [`Object::key`].
 pub(super) type Key = (Coverage, usize, usize, bool, u32);
 
-/// Every object with a finite transform, a mesh and a material.
+/// Every object with a finite transform, a mesh and a material that is not hidden.
 #[derive(Debug, Default)]
 pub(super) struct Objects {
     /// By slot.
@@ -86,6 +86,9 @@ pub(super) struct Objects {
     pub(super) bounds: Option<Aabb>,
     pub(super) solid_bounds: Option<Aabb>,
 }
+
+/// So many changes are few.
+const MANY: usize = 64;
 
 /// What an update changed.
 #[derive(Debug, Default)]
@@ -104,26 +107,35 @@ impl Objects {
         let solid = solid_meshes(world);
         let now = world.change_tick();
         let is_new = |tick: Tick| since.is_none_or(|since| tick.is_newer_than(since, now));
-        let mut query = world.query::<(Ref<'_, MeshInstance>, Ref<'_, ObjectSlot>, Ref<'_, GlobalTransform>, Ref<'_, WorldBounds>)>();
+        type Looked<'a> = (Ref<'a, MeshInstance>, Ref<'a, ObjectSlot>, Ref<'a, GlobalTransform>, Ref<'a, WorldBounds>, Ref<'a, Shown>);
+        let mut query = world.query::<Looked<'_>>();
         let mut present = vec![false; self.by_slot.len()];
         let mut changed = Changed::default();
         let mut fresh = Vec::new();
-        for (instance, slot, transform, bounds) in query.iter(world) {
+        for (instance, slot, transform, bounds, shown) in query.iter(world) {
             let place = slot.0 as usize;
             if present.len() <= place {
                 present.resize(place + 1, false);
             }
             present[place] = true;
-            let ticks = [instance.last_changed(), slot.last_changed(), transform.last_changed(), bounds.last_changed()];
+            let ticks =
+                [instance.last_changed(), slot.last_changed(), transform.last_changed(), bounds.last_changed(), shown.last_changed()];
             if ticks.into_iter().any(is_new) {
-                fresh.push((slot.0, object(&instance, slot.0, &transform, bounds.bounds, mesh_count, materials, &solid)));
+                let bounds = bounds.bounds.filter(|_| shown.0);
+                fresh.push((slot.0, object(&instance, slot.0, &transform, bounds, mesh_count, materials, &solid)));
             }
         }
         let gone = self.by_slot.iter().enumerate().filter(|(slot, object)| object.is_some() && !present[*slot]);
         fresh.extend(gone.map(|(slot, _)| (slot as u32, None)));
         self.by_slot.resize(present.len(), None);
+        // Each change moves what stands behind it in the order; many are put in order at once.
+        let many = fresh.len() > MANY.max(self.order.len() / MANY);
         for (slot, object) in fresh {
-            self.set(slot, object, &mut changed);
+            self.set(slot, object, !many, &mut changed);
+        }
+        if many {
+            self.order = self.by_slot.iter().flatten().map(Object::key).collect();
+            self.order.sort_unstable();
         }
         let rows = self.by_slot.iter().rposition(Option::is_some).map_or(0, |last| last + 1);
         self.by_slot.truncate(rows);
@@ -141,7 +153,8 @@ impl Objects {
         changed
     }
 
-    fn set(&mut self, slot: u32, object: Option<Object>, changed: &mut Changed) {
+    /// Without `in_order`, the order is made anew afterwards.
+    fn set(&mut self, slot: u32, object: Option<Object>, in_order: bool, changed: &mut Changed) {
         let Some(entry) = self.by_slot.get_mut(slot as usize) else { return };
         let before = std::mem::replace(entry, object);
         if before == object {
@@ -155,6 +168,9 @@ impl Objects {
             return;
         }
         changed.keys = true;
+        if !in_order {
+            return;
+        }
         if let Some(Ok(place)) = old.map(|key| self.order.binary_search(&key)) {
             self.order.remove(place);
         }

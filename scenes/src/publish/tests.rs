@@ -10,7 +10,8 @@ use super::*;
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
 use crate::world::{
-    Camera, ChildOf, DirectionalLight, Exposure, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world, set_translation,
+    Camera, ChildOf, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world,
+    set_translation,
 };
 
 const CAMERA_VIEW: ViewRequest = ViewRequest { kind: ViewKind::Camera, width: 64, height: 48 };
@@ -245,6 +246,53 @@ fn counts_are_rows_of_lights_and_instances_of_surfaces() {
     assert_eq!(counts, COUNT_NAMES.iter().zip(expected).map(|(name, count)| ((*name).to_owned(), count)).collect::<Vec<_>>());
 }
 
+#[test]
+fn what_is_hidden_keeps_its_rows_and_neither_draws_nor_shines() {
+    let mut world = crowd();
+    let faces = [2, 3].map(|face| (DrawFilter::All, ViewKind::LocalLight(0, face)));
+    let lists = [(DrawFilter::All, ViewKind::Camera), faces[0], faces[1]];
+    let wanted = request(&[], &lists);
+    let mut publisher = Publisher::default();
+    let seen = |published: &Published, list: usize| {
+        let mut slots: Vec<u32> = published.scene.draw_lists[list].batches.iter().flat_map(|batch| slots(published, batch)).collect();
+        slots.sort_unstable();
+        slots
+    };
+    let group = world.spawn(Transform::default()).id();
+    let entities: Vec<Entity> = world.query::<(Entity, &MeshInstance)>().iter(&world).map(|(entity, _)| entity).collect();
+    let [lamp] = world.query_filtered::<Entity, bevy_ecs::prelude::With<LocalLight>>().iter(&world).collect::<Vec<_>>()[..] else {
+        panic!()
+    };
+    let [sun] = world.query_filtered::<Entity, bevy_ecs::prelude::With<DirectionalLight>>().iter(&world).collect::<Vec<_>>()[..] else {
+        panic!()
+    };
+    world.entity_mut(entities[2]).insert(ChildOf(group));
+    let before = publisher.publish(&mut world, &wanted).unwrap();
+    assert_eq!(seen(&before, 0), (0..10).collect::<Vec<u32>>());
+    let counted = counts(&world);
+    for hidden in [group, entities[9], sun] {
+        world.entity_mut(hidden).insert(Hidden);
+    }
+    let hidden = publisher.publish(&mut world, &wanted).unwrap();
+    assert_eq!(seen(&hidden, 0), [0, 1, 3, 4, 5, 6, 7, 8]);
+    assert!((1..3).all(|list| !seen(&hidden, list).contains(&2)) && !seen(&hidden, 2).is_empty());
+    let rows: Vec<InstanceRow> = table_rows(&hidden, "instances");
+    assert_eq!((rows.len(), rows[2].world_from_object, rows[3].object), (9, [[0.0; 4]; 4], 3), "rows at the end are cut");
+    let suns: Vec<DirectionalRow> = table_rows(&hidden, "directional_lights");
+    assert_eq!((suns.len(), suns[0].illuminance), (1, [0.0; 3]));
+    assert_eq!(counts(&world), counted);
+    world.entity_mut(lamp).insert(Hidden);
+    let dark = publisher.publish(&mut world, &wanted).unwrap();
+    let lamps: Vec<LocalRow> = table_rows(&dark, "local_lights");
+    assert_eq!((lamps.len(), lamps[0].intensity), (1, [0.0; 3]));
+    assert!(seen(&dark, 1).is_empty() && seen(&dark, 2).is_empty());
+    for shown in [group, entities[9], sun, lamp] {
+        world.entity_mut(shown).remove::<Hidden>();
+    }
+    let shown = publisher.publish(&mut world, &wanted).unwrap().scene;
+    assert!(shown.tables == before.scene.tables && shown.draw_lists == before.scene.draw_lists);
+}
+
 /// What was published before leaves no trace: random changes, published by one who remembers and by one who does not.
 mod memory {
     use proptest::prelude::*;
@@ -278,6 +326,8 @@ mod memory {
                     world.entity_mut(thing).insert(ChildOf(above));
                 }
             }
+            (11, Some(thing)) => _ = world.entity_mut(thing).insert(Hidden),
+            (12, Some(thing)) => _ = world.entity_mut(thing).remove::<Hidden>(),
             (7, _) => world.resource_mut::<Materials>().0[which % 4].base_color[0] = at.x,
             (8, _) => {
                 world.resource_mut::<Materials>().0[which % 4].alpha_mode = if at.x > 0.0 { AlphaMode::Blend } else { AlphaMode::Opaque }
@@ -298,7 +348,7 @@ mod memory {
         #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
         #[test]
-        fn leaves_no_trace(steps in prop::collection::vec(prop::collection::vec((0_u8..16, 0_usize..40, prop::array::uniform3(-6.0_f32..6.0)), 0..6), 1..14)) {
+        fn leaves_no_trace(steps in prop::collection::vec(prop::collection::vec((0_u8..18, 0_usize..40, prop::array::uniform3(-6.0_f32..6.0)), 0..6), 1..14)) {
             let mut world = crowd();
             let lamp = |face| ViewKind::LocalLight(0, face);
             let mut lists: Vec<(DrawFilter, ViewKind)> = (0..6).map(|face| (DrawFilter::Opaque, lamp(face))).collect();

@@ -11,7 +11,13 @@ use luminaire_graph::syntax::document::Text;
 use super::check::{FileUse, Play, material, motion};
 use super::checks::Problems;
 use super::load::{extension, load_gltf};
+use crate::asset::Asset;
 use crate::world::{Materials, Repeat, StoredAsset, store_asset};
+
+/// Most levels of a file's nodes: each event inside of it walks up once.
+const MAX_LEVELS: usize = 1024;
+/// Most materials, where entries change those of their files.
+const MAX_MATERIALS: usize = 1 << 18;
 
 /// Where a scene's files may lie.
 #[derive(Clone, Copy)]
@@ -53,6 +59,17 @@ fn load(world: &mut World, path: &Path, used: &FileUse, place: Option<Place<'_>>
     match load_gltf(path, place.and_then(|place| place.root)) {
         Ok(loaded) => {
             problems.0.extend(loaded.warnings);
+            if depth(&loaded.asset) > MAX_LEVELS {
+                problems.add(
+                    Diagnostic::error(
+                        "scene::too-deep",
+                        format!("nodes of `{}` stand more than {MAX_LEVELS} levels deep", used.path.value),
+                    )
+                    .at(used.path.span, "this file")
+                    .hint("give its nodes parents nearer to the root"),
+                );
+                return None;
+            }
             Some(Arc::new(store_asset(world, loaded.asset)))
         }
         Err(errors) => {
@@ -60,6 +77,15 @@ fn load(world: &mut World, path: &Path, used: &FileUse, place: Option<Place<'_>>
             None
         }
     }
+}
+
+/// How many nodes stand above one another. Parents come before their children.
+fn depth(asset: &Asset) -> usize {
+    let mut depths: Vec<usize> = Vec::with_capacity(asset.nodes.len());
+    for node in &asset.nodes {
+        depths.push(1 + node.parent.and_then(|parent| depths.get(parent)).copied().unwrap_or(0));
+    }
+    depths.into_iter().max().unwrap_or(0)
 }
 
 /// The file with the materials that the scene changes. Errors: a name that no material of the file has.
@@ -75,6 +101,15 @@ fn with_changes(world: &mut World, asset: &StoredAsset, used: &FileUse, problems
             Some(&name.value),
             known,
         );
+    }
+    let stored = world.get_resource::<Materials>().map_or(0, |materials| materials.0.len());
+    if stored + names.len() > MAX_MATERIALS {
+        problems.add(
+            Diagnostic::error("scene::too-much", format!("with those of the file `{}` the scene has too many materials", used.name))
+                .at(used.path.span, format!("at most {MAX_MATERIALS} are allowed; each entry that changes some has all of its file again"))
+                .hint("change materials of fewer entries"),
+        );
+        return asset.clone();
     }
     // Several materials of one name change together; what is wrong with a value is said once.
     let mut said = Problems::default();

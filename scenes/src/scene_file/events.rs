@@ -80,6 +80,7 @@ impl One<'_, '_> {
                 let to = self.problems.vector(&format!("`to` of the scaling of `{node}`"), Some(to), Vec3::ONE, -FAR..=FAR);
                 let timing = self.timing(during.as_ref(), *ease);
                 if let Some(node) = names.find(node, at, self.problems) {
+                    names.scale(node, at + timing.0, to.to_array().contains(&0.0));
                     self.change(Property::Scale(node), Goal::Value(to.extend(0.0)), timing);
                 }
             }
@@ -136,6 +137,12 @@ impl One<'_, '_> {
                     self.events.push(Event { at, action: Action::Remove(node) });
                 }
             }
+            ActionDoc::Hide { node } | ActionDoc::Show { node } => {
+                let shown = matches!(self.event.action, ActionDoc::Show { .. });
+                if let Some(node) = names.find(node, at, self.problems) {
+                    self.events.push(Event { at, action: Action::Show { node, shown } });
+                }
+            }
             ActionDoc::Reparent { node: name, parent, keep_place } => {
                 let node = names.find(name, at, self.problems);
                 let above = match parent {
@@ -143,8 +150,17 @@ impl One<'_, '_> {
                     None => Some(None),
                 };
                 if let (Some(node), Some(parent)) = (node, above) {
+                    let keep_place = keep_place.unwrap_or(true);
+                    if keep_place && parent.is_some_and(|parent| names.is_flat(parent, at)) {
+                        let message = format!("`{name}` can't keep its place below a parent whose scale is zero");
+                        self.problems.add(
+                            Diagnostic::error("scene::flat-parent", message)
+                                .at(name.span, "keeps its place")
+                                .hint("let it take its place from the parent, with `keep_place: false`"),
+                        );
+                    }
                     names.reparent(node, parent, name, self.problems);
-                    let action = Action::Reparent { node, parent, keep_place: keep_place.unwrap_or(true) };
+                    let action = Action::Reparent { node, parent, keep_place };
                     self.events.push(Event { at, action });
                 }
             }

@@ -13,6 +13,7 @@ use super::checks::Problems;
 use super::document::SceneDoc;
 use super::events::events;
 use super::names::Names;
+use super::size::check_size;
 use super::{default_light, spawn};
 use crate::gltf;
 use crate::timeline::{self, Timeline};
@@ -78,6 +79,7 @@ fn load(name: &str, text: &str, place: Option<Place<'_>>, sources: &mut SourceMa
     world.insert_resource(Materials(materials));
     world.insert_resource(Meshes(primitives.meshes));
     let files = load_files(&mut world, &files, place, &mut problems);
+    check_size(&declarations, &files, &world, &mut problems);
     let mut names = Names::new(&declarations, &files, &document.timeline);
     names.declare(initial.clone(), 0.0, &mut problems);
     let events = events(&document, &batches, &mut names, &world, &mut problems);
@@ -91,7 +93,10 @@ fn load(name: &str, text: &str, place: Option<Place<'_>>, sources: &mut SourceMa
     spawn(&mut world, &declarations, initial, &parents, &files, &mut spawned);
     if !events.is_empty() {
         world.insert_resource(Timeline::new(events, declarations, parents, files, spawned));
-        timeline::advance(&mut world, 0.0, |_, _| {})?;
+        let failed = timeline::advance(&mut world, 0.0, |_, _| {}).map_err(|refused| vec![refused])?;
+        if !failed.is_empty() {
+            return Err(failed);
+        }
     }
     Ok(LoadedScene { world, warnings: problems.0 })
 }

@@ -16,6 +16,7 @@ mod document;
 mod events;
 mod load;
 mod names;
+mod size;
 mod spawn;
 
 #[cfg(test)]

@@ -32,6 +32,8 @@ pub(super) struct Names<'a> {
     /// Nodes inside of files that have another parent than the file gave them.
     moved: BTreeMap<NodeRef, Option<NodeRef>>,
     gone: BTreeMap<NodeRef, (f64, Span)>,
+    /// Nodes that were scaled: when that ends, and whether some factor is zero then.
+    scaled: BTreeMap<NodeRef, (f64, bool)>,
     /// Names that are spawned some time.
     future: BTreeMap<&'a str, (f64, Span)>,
 }
@@ -50,7 +52,17 @@ impl<'a> Names<'a> {
         }
         let parents = vec![None; declarations.len()];
         let declared = parents.clone();
-        Names { declarations, files, by_name: BTreeMap::new(), parents, declared, moved: BTreeMap::new(), gone: BTreeMap::new(), future }
+        Names {
+            declarations,
+            files,
+            by_name: BTreeMap::new(),
+            parents,
+            declared,
+            moved: BTreeMap::new(),
+            gone: BTreeMap::new(),
+            scaled: BTreeMap::new(),
+            future,
+        }
     }
 
     /// These exist from now on. Parents may be named before they are declared.
@@ -157,6 +169,20 @@ impl<'a> Names<'a> {
         self.gone.insert(node, (now, span));
     }
 
+    /// The node has another scale from some time on.
+    pub(super) fn scale(&mut self, node: NodeRef, ends: f64, is_flat: bool) {
+        self.scaled.insert(node, (ends, is_flat));
+    }
+
+    /// Whether the node is known to have no extent along some direction, itself or by one above it. What a file or a running change
+    /// does is not known here.
+    pub(super) fn is_flat(&self, node: NodeRef, now: f64) -> bool {
+        std::iter::successors(Some(node), |node| self.parent(*node)).take(4 * MAX_DEPTH as usize).any(|node| match self.scaled.get(&node) {
+            Some((ends, is_flat)) => *is_flat && *ends <= now,
+            None => self.declaration(node).is_some_and(|declaration| declaration.local.matrix3.determinant() == 0.0),
+        })
+    }
+
     /// Gives a node another parent. Errors: it would stand below itself, or too deep.
     pub(super) fn reparent(&mut self, node: NodeRef, parent: Option<NodeRef>, name: &Text, problems: &mut Problems) {
         let mut above = std::iter::successors(parent, |node| self.parent(*node)).take(4 * MAX_DEPTH as usize);
@@ -237,15 +263,14 @@ impl<'a> Names<'a> {
 /// The node of a name inside of a file.
 fn inside(asset: &StoredAsset, name: &Text, inner: &str, problems: &mut Problems) -> Option<usize> {
     let known = || asset.nodes().iter().map(|node| node.name.as_str());
-    let mut found = known().enumerate().filter(|(_, known)| *known == inner).map(|(index, _)| index);
-    match (found.next(), found.next()) {
-        (Some(index), None) => return Some(index),
-        (Some(_), Some(_)) => problems.add(
+    match *asset.named(inner) {
+        [index] => return Some(index),
+        [_, ..] => problems.add(
             Diagnostic::error("scene::ambiguous-node", format!("the file has several nodes `{inner}`"))
                 .at(name.span, "could be any of them")
                 .hint("give the node a name of its own in the file"),
         ),
-        (None, _) => problems.add_unknown(
+        [] => problems.add_unknown(
             Diagnostic::error("scene::unknown-node", format!("the file has no node `{inner}`")).at(name.span, "no such node"),
             "nodes of the file",
             Some(inner),

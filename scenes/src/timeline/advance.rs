@@ -9,23 +9,26 @@ use super::hierarchy;
 use super::property::{read, write};
 use super::segment::{Goal, Segment};
 use crate::scene_file::{play_clip, spawn};
+use crate::world::Hidden;
 
 /// Brings the world to a time: stops at every event on the way, where `settle` brings all that moves by itself to that time
-/// first, and leaves running changes at `now`. A scene without a timeline stays as it is.
-/// Errors: `world::time-backwards` behind an event that has happened, and what an event can't do; those before it are done.
-pub(crate) fn advance(world: &mut World, now: f64, mut settle: impl FnMut(&mut World, f64)) -> Result<(), Vec<Diagnostic>> {
-    let Some(mut timeline) = world.remove_resource::<Timeline>() else { return Ok(()) };
+/// first, and leaves running changes at `now`. A scene without a timeline stays as it is. Returns what events could not do, each by
+/// itself: one that can't happen changes nothing, and keeps no other from happening.
+/// Errors: `world::time-backwards` behind an event that has happened; nothing has changed then.
+pub(crate) fn advance(world: &mut World, now: f64, mut settle: impl FnMut(&mut World, f64)) -> Result<Vec<Diagnostic>, Diagnostic> {
+    let Some(mut timeline) = world.remove_resource::<Timeline>() else { return Ok(Vec::new()) };
     let done = timeline.advance(world, now, &mut settle);
     world.insert_resource(timeline);
     done
 }
 
 impl Timeline {
-    fn advance(&mut self, world: &mut World, now: f64, settle: &mut dyn FnMut(&mut World, f64)) -> Result<(), Vec<Diagnostic>> {
+    fn advance(&mut self, world: &mut World, now: f64, settle: &mut dyn FnMut(&mut World, f64)) -> Result<Vec<Diagnostic>, Diagnostic> {
         if let Some(last) = self.happened.checked_sub(1).and_then(|last| self.events.get(last)).filter(|last| last.at > now) {
             let message = format!("time can't go back to {now} s, for what happens in the scene at {} s has happened", last.at);
-            return Err(vec![Diagnostic::error("world::time-backwards", message).hint("load the scene again, and go forward from 0")]);
+            return Err(Diagnostic::error("world::time-backwards", message).hint("load the scene again, and go forward from 0"));
         }
+        let mut failed = Vec::new();
         while let Some(event) = self.events.get(self.happened).filter(|event| event.at <= now).cloned() {
             let is_first_of_moment =
                 self.happened.checked_sub(1).and_then(|last| self.events.get(last)).is_none_or(|last| last.at < event.at);
@@ -34,10 +37,10 @@ impl Timeline {
                 settle(world, event.at);
             }
             self.happened += 1;
-            self.happen(world, &event).map_err(|problem| vec![problem])?;
+            failed.extend(self.happen(world, &event).err().map(|problem| problem.note(format!("an event at {} s", event.at))));
         }
         self.evaluate(world, now);
-        Ok(())
+        Ok(failed)
     }
 
     fn happen(&mut self, world: &mut World, event: &Event) -> Result<(), Diagnostic> {
@@ -56,14 +59,24 @@ impl Timeline {
                 self.evaluate_one(world, *property, event.at);
             }
             Action::Spawn(range) => {
+                let above = self.parents.get(range.clone()).unwrap_or_default().iter().flatten();
+                for parent in above.filter(|parent| !range.contains(&parent.declaration)) {
+                    self.living(world, *parent)?;
+                }
                 spawn(world, &self.declarations, range.clone(), &self.parents, &self.files, &mut self.spawned);
             }
             Action::Remove(node) => {
                 let entity = self.living(world, *node)?;
+                // What changes it ends when it is written next.
                 hierarchy::remove(world, entity);
-                let mut running = std::mem::take(&mut self.running);
-                running.retain(|property, _| node_of(*property).is_none_or(|node| self.living(world, node).is_ok()));
-                self.running = running;
+            }
+            Action::Show { node, shown } => {
+                let mut entity =
+                    self.entity(*node).and_then(|entity| world.get_entity_mut(entity).ok()).ok_or_else(|| gone(&self.name(*node)))?;
+                match shown {
+                    true => entity.remove::<Hidden>(),
+                    false => entity.insert(Hidden),
+                };
             }
             Action::Animate { node, play } => {
                 let entity = self.living(world, *node)?;
@@ -100,8 +113,16 @@ impl Timeline {
         let Some(value) = running(&property).map(|segment| segment.at(now)) else { return };
         let scale = parts.last().and_then(running).map_or(Vec3::ONE, |scale| scale.at(now).truncate());
         let has_ended = parts.iter().filter_map(running).all(|segment| segment.has_ended(now));
-        let entity = node_of(property).and_then(|node| self.entity(node));
-        write(world, entity.filter(|entity| world.get_entity(*entity).is_ok()), property, value, scale);
+        let node = node_of(property);
+        let entity = node.and_then(|node| self.entity(node)).filter(|entity| world.get_entity(*entity).is_ok());
+        if node.is_some() && entity.is_none() {
+            self.active.remove(&property);
+            for part in parts {
+                self.running.remove(&part);
+            }
+            return;
+        }
+        write(world, entity, property, value, scale);
         if has_ended {
             self.active.remove(&property);
         } else {

@@ -52,11 +52,28 @@ pub(crate) enum Property {
 /// What happens at an event.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) enum Action {
-    Change { property: Property, goal: Goal, during: f64, ease: Ease },
+    Change {
+        property: Property,
+        goal: Goal,
+        during: f64,
+        ease: Ease,
+    },
     Spawn(Range<usize>),
     Remove(NodeRef),
-    Animate { node: NodeRef, play: Play },
-    Reparent { node: NodeRef, parent: Option<NodeRef>, keep_place: bool },
+    /// Or hide.
+    Show {
+        node: NodeRef,
+        shown: bool,
+    },
+    Animate {
+        node: NodeRef,
+        play: Play,
+    },
+    Reparent {
+        node: NodeRef,
+        parent: Option<NodeRef>,
+        keep_place: bool,
+    },
 }
 
 /// Something that happens at a time.

@@ -1,9 +1,9 @@
 //! Axis-aligned bounds of what stands in the world.
 
 use bevy_ecs::prelude::{Changed, Component, DetectChanges, DetectChangesMut, Entity, Or, Without, World};
-use glam::{DVec3, Vec3};
+use glam::{Affine3A, DVec3, Mat3A, Vec3, Vec3A};
 
-use super::{GlobalTransform, MeshInstance, Meshes};
+use super::{GlobalTransform, MeshInstance, Meshes, Shown};
 
 /// A finite axis-aligned box, world space, metres.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -79,10 +79,9 @@ pub fn update_bounds(world: &mut World) {
     // An instance may name a mesh that comes later.
     let more = meshes.is_changed();
     let mut fresh = Vec::new();
-    let bounds = |instance: &MeshInstance, transform: &GlobalTransform, meshes: &Meshes| {
-        let vertices = meshes.0.get(instance.mesh).map_or(&[][..], |mesh| &mesh.vertices);
-        Aabb::of(vertices.iter().map(|vertex| transform.0.transform_point3(Vec3::from(vertex.position))))
-    };
+    let mut last = LastShape::default();
+    let mut bounds =
+        |instance: &MeshInstance, transform: &GlobalTransform, meshes: &Meshes| last.bounds(instance.mesh, transform.0, meshes);
     let mut stale = world.query_filtered::<(Entity, &MeshInstance, &GlobalTransform), Stale>();
     let mut empty = world.query::<(Entity, &MeshInstance, &GlobalTransform, &WorldBounds)>();
     let Some(meshes) = world.get_resource::<Meshes>() else { return };
@@ -99,20 +98,70 @@ pub fn update_bounds(world: &mut World) {
     }
 }
 
-/// The bounds of all mesh instances, as of the last [`update_bounds`]; `None` if there is nothing.
+/// The mesh that was measured last: copies of a thing stand behind one another, and differ in their place alone.
+#[derive(Default)]
+struct LastShape {
+    mesh: usize,
+    axes: Mat3A,
+    /// Without the place.
+    bounds: Option<Aabb>,
+}
+
+impl LastShape {
+    /// Bit for bit what all vertices give: a sum is rounded alike whether it is taken of all or of the extreme ones.
+    fn bounds(&mut self, mesh: usize, place: Affine3A, meshes: &Meshes) -> Option<Aabb> {
+        let vertices = meshes.0.get(mesh).map_or(&[][..], |mesh| &mesh.vertices);
+        if self.bounds.is_none() || self.mesh != mesh || self.axes != place.matrix3 {
+            let points = vertices.iter().map(|vertex| Vec3::from(place.matrix3 * Vec3A::from(vertex.position)));
+            *self = LastShape { mesh, axes: place.matrix3, bounds: Aabb::of(points) };
+        }
+        let [min, max] = self.bounds.map(|bounds| [bounds.min, bounds.max])?.map(|corner| corner + Vec3::from(place.translation));
+        if min.is_finite() && max.is_finite() {
+            return Some(Aabb { min, max });
+        }
+        Aabb::of(vertices.iter().map(|vertex| place.transform_point3(Vec3::from(vertex.position))))
+    }
+}
+
+/// The bounds of all mesh instances that are not hidden, as of the last [`update_bounds`]; `None` if there is nothing.
 pub fn scene_bounds(world: &mut World) -> Option<Aabb> {
-    world.query::<&WorldBounds>().iter(world).filter_map(|known| known.bounds).reduce(Aabb::union)
+    let mut query = world.query::<(&WorldBounds, &Shown)>();
+    query.iter(world).filter(|(_, shown)| shown.0).filter_map(|(known, _)| known.bounds).reduce(Aabb::union)
 }
 
 #[cfg(test)]
 mod tests {
+    use proptest::prelude::*;
+
     use super::*;
+    use crate::asset::{Mesh, Vertex};
+    use crate::primitive::cuboid;
 
     #[test]
     fn points_that_are_not_finite_are_left_out() {
         let points = [Vec3::new(f32::NAN, 0.0, 0.0), Vec3::ONE, Vec3::new(-1.0, 2.0, 0.5), Vec3::splat(f32::INFINITY)];
         assert_eq!(Aabb::of(points), Some(Aabb { min: Vec3::new(-1.0, 1.0, 0.5), max: Vec3::new(1.0, 2.0, 1.0) }));
         assert_eq!(Aabb::of([Vec3::NAN]), None);
+    }
+
+    proptest! {
+        #[test]
+        fn copies_have_the_bounds_of_all_their_vertices(
+            points in prop::collection::vec(prop::array::uniform3(-3.0_f32..3.0), 1..20),
+            places in prop::collection::vec((prop::array::uniform3(-9.0_f32..9.0), 0_usize..3), 1..12),
+            size in prop_oneof![Just(1.0_f32), Just(1e-3), Just(3e38), Just(f32::NAN)],
+        ) {
+            let vertex = |position| Vertex { position, ..bytemuck::Zeroable::zeroed() };
+            let mesh = Mesh { vertices: points.iter().copied().map(vertex).collect(), ..cuboid("box", Vec3::ONE, 0) };
+            let meshes = Meshes(vec![mesh]);
+            let mut last = LastShape::default();
+            for (at, axes) in places {
+                let axes = [Mat3A::IDENTITY, Mat3A::from_rotation_x(0.7), Mat3A::from_diagonal(Vec3::new(size, 1.0, -2.0))][axes];
+                let place = Affine3A { matrix3: axes, translation: (Vec3::from(at) * size.max(1.0)).into() };
+                let expected = Aabb::of(points.iter().map(|point| place.transform_point3(Vec3::from(*point))));
+                prop_assert_eq!(last.bounds(0, place, &meshes), expected);
+            }
+        }
     }
 
     #[test]

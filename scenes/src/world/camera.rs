@@ -66,12 +66,15 @@ struct LastSearch {
     found: Option<CameraPose>,
 }
 
+/// Scenes of more triangles are not searched for a room: every ray looks at each of them.
+const MOST_TRIANGLES: usize = 1 << 22;
+
 /// The camera inside of a scene that is a room, as [`interior_camera`] finds it. Needs propagated transforms.
 pub(crate) fn camera_inside(world: &mut World, bounds: Aabb) -> Option<CameraPose> {
     if let Some(last) = world.get_resource::<LastSearch>().filter(|last| last.bounds == bounds) {
         return last.found;
     }
-    let found = interior_camera(&Triangles::of_world(world), bounds);
+    let found = if Triangles::count(world) > MOST_TRIANGLES { None } else { interior_camera(&Triangles::of_world(world), bounds) };
     world.insert_resource(LastSearch { bounds, found });
     found
 }

@@ -3,11 +3,13 @@
 use bevy_ecs::prelude::Component;
 use glam::{Affine3A, UVec3, Vec2, Vec3};
 
+use super::Shown;
+use super::slots::{give_back, take};
 use crate::asset::Projection;
 
 /// To the space of the parent entity, or of the world where there is none. May be singular.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Default)]
-#[require(GlobalTransform)]
+#[require(GlobalTransform, Shown)]
 pub struct Transform(pub Affine3A);
 
 /// To world space; written by [`super::propagate_transforms`]. Not finite where a product overflowed: such entities publish
@@ -135,16 +137,20 @@ pub enum Exposure {
 
 /// Row of a [`MeshInstance`] in the table `instances`.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<ObjectSlot>, on_discard = give_back::<ObjectSlot>)]
 pub struct ObjectSlot(pub u32);
 
 /// Row of a [`DirectionalLight`] in the table `directional_lights`.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<DirectionalSlot>, on_discard = give_back::<DirectionalSlot>)]
 pub struct DirectionalSlot(pub u32);
 
 /// Row of a [`LocalLight`] in the table `local_lights`.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<LocalSlot>, on_discard = give_back::<LocalSlot>)]
 pub struct LocalSlot(pub u32);
 
 /// Order of a [`Camera`] among cameras: the lowest is the default one.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<CameraSlot>, on_discard = give_back::<CameraSlot>)]
 pub struct CameraSlot(pub u32);

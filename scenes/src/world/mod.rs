@@ -23,6 +23,7 @@ mod spawn;
 mod transform;
 mod triangles;
 mod update;
+mod visibility;
 
 pub use animation::{AnimationPlayer, Clip, RestPose, clips, play_clips};
 pub use bevy_ecs::hierarchy::{ChildOf, Children};
@@ -44,8 +45,9 @@ pub use repeat::Repeat;
 pub use resources::{Environment, Images, Materials, Meshes, new_world};
 pub use slots::assign_slots;
 pub(crate) use solid::solid_meshes;
-pub use spatial::{Kind, SpatialIndex};
+pub use spatial::{Holds, Kind, OrientedBox, SpatialIndex};
 pub use spawn::{StoredAsset, spawn_asset, spawn_stored, store_asset};
 pub use transform::propagate_transforms;
 pub use triangles::{Hit, Triangles};
 pub use update::update;
+pub use visibility::{Hidden, Shown, propagate_visibility};

@@ -3,33 +3,102 @@
 //! Guarantees: an entity keeps its slot for life, and a spawn or a removal renumbers nobody. A new entity takes the lowest slot
 //! that no living entity holds, in the order of entity indices, so equal histories give equal slots.
 
-use bevy_ecs::prelude::{Component, Entity, With, Without, World};
+use std::collections::BTreeSet;
+use std::marker::PhantomData;
+
+use bevy_ecs::lifecycle::HookContext;
+use bevy_ecs::prelude::{Component, Entity, Resource, With, Without, World};
+use bevy_ecs::world::DeferredWorld;
 
 use super::components::{Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot};
 
-/// Gives a slot to every mesh instance, light and camera that has none.
-pub fn assign_slots(world: &mut World) {
-    assign::<MeshInstance, ObjectSlot>(world, ObjectSlot, |slot| slot.0);
-    assign::<DirectionalLight, DirectionalSlot>(world, DirectionalSlot, |slot| slot.0);
-    assign::<LocalLight, LocalSlot>(world, LocalSlot, |slot| slot.0);
-    assign::<Camera, CameraSlot>(world, CameraSlot, |slot| slot.0);
+/// A component that holds a slot.
+pub(super) trait Slot: Component + Sized {
+    fn new(row: u32) -> Self;
+    fn row(&self) -> u32;
 }
 
-fn assign<Kind: Component, Slot: Component>(world: &mut World, make: fn(u32) -> Slot, index: fn(&Slot) -> u32) {
-    let mut waiting: Vec<Entity> = world.query_filtered::<Entity, (With<Kind>, Without<Slot>)>().iter(world).collect();
+macro_rules! slot {
+    ($($name:ident),*) => {$(
+        impl Slot for $name {
+            fn new(row: u32) -> Self {
+                Self(row)
+            }
+
+            fn row(&self) -> u32 {
+                self.0
+            }
+        }
+    )*};
+}
+slot!(ObjectSlot, DirectionalSlot, LocalSlot, CameraSlot);
+
+/// Which slots nobody holds.
+#[derive(Resource)]
+struct Free<Of> {
+    /// Below the end.
+    gaps: BTreeSet<u32>,
+    /// Nobody holds this one or a higher one.
+    end: u32,
+    of: PhantomData<fn() -> Of>,
+}
+
+impl<Of> Default for Free<Of> {
+    fn default() -> Free<Of> {
+        Free { gaps: BTreeSet::new(), end: 0, of: PhantomData }
+    }
+}
+
+impl<Of> Free<Of> {
+    fn lowest(&self, count: usize) -> Vec<u32> {
+        self.gaps.iter().copied().chain(self.end..u32::MAX).take(count).collect()
+    }
+}
+
+/// What happens when an entity gets a slot.
+pub(super) fn take<Of: Slot>(mut world: DeferredWorld<'_>, context: HookContext) {
+    let row = world.get::<Of>(context.entity).map(Slot::row);
+    if let (Some(row), Some(mut free)) = (row, world.get_resource_mut::<Free<Of>>()) {
+        if row < free.end {
+            free.gaps.remove(&row);
+        } else {
+            let end = free.end;
+            free.gaps.extend(end..row);
+            free.end = row.saturating_add(1);
+        }
+    }
+}
+
+/// What happens when an entity loses its slot.
+pub(super) fn give_back<Of: Slot>(mut world: DeferredWorld<'_>, context: HookContext) {
+    let row = world.get::<Of>(context.entity).map(Slot::row);
+    if let (Some(row), Some(mut free)) = (row, world.get_resource_mut::<Free<Of>>()) {
+        free.gaps.insert(row);
+        while let Some(last) = free.end.checked_sub(1)
+            && free.gaps.remove(&last)
+        {
+            free.end = last;
+        }
+    }
+}
+
+/// Gives a slot to every mesh instance, light and camera that has none.
+pub fn assign_slots(world: &mut World) {
+    assign::<MeshInstance, ObjectSlot>(world);
+    assign::<DirectionalLight, DirectionalSlot>(world);
+    assign::<LocalLight, LocalSlot>(world);
+    assign::<Camera, CameraSlot>(world);
+}
+
+fn assign<Kind: Component, Of: Slot>(world: &mut World) {
+    let mut waiting: Vec<Entity> = world.query_filtered::<Entity, (With<Kind>, Without<Of>)>().iter(world).collect();
     if waiting.is_empty() {
         return;
     }
     waiting.sort_unstable_by_key(|entity| order(*entity));
-    let mut held: Vec<u32> = world.query::<&Slot>().iter(world).map(index).collect();
-    held.sort_unstable();
-    let mut held = held.into_iter().peekable();
-    let free = (0..u32::MAX).filter(|slot| {
-        while held.next_if(|taken| taken < slot).is_some() {}
-        held.peek() != Some(slot)
-    });
+    let free = world.get_resource_or_init::<Free<Of>>().lowest(waiting.len());
     for (entity, slot) in waiting.into_iter().zip(free) {
-        world.entity_mut(entity).insert(make(slot));
+        world.entity_mut(entity).insert(Of::new(slot));
     }
 }
 

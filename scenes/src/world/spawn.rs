@@ -16,7 +16,9 @@ use crate::asset::{Animation, Asset, Light, LightKind, Material, Node, TextureUs
 /// An asset whose meshes, materials and images are in a world, ready to be spawned any number of times.
 #[derive(Debug, Clone)]
 pub struct StoredAsset {
-    nodes: Vec<Node>,
+    nodes: Arc<[Node]>,
+    /// Indices of nodes by their names, then by themselves.
+    by_name: Arc<[usize]>,
     lights: Vec<Light>,
     cameras: Vec<crate::asset::Camera>,
     animations: Arc<[Animation]>,
@@ -31,6 +33,19 @@ impl StoredAsset {
     /// Its nodes, in the order in which they are spawned.
     pub(crate) fn nodes(&self) -> &[Node] {
         &self.nodes
+    }
+
+    /// The nodes of a name.
+    pub(crate) fn named(&self, name: &str) -> &[usize] {
+        let is = |index: &usize| self.nodes.get(*index).map(|node| node.name.as_str());
+        let first = self.by_name.partition_point(|index| is(index) < Some(name));
+        let last = self.by_name.partition_point(|index| is(index) <= Some(name));
+        self.by_name.get(first..last).unwrap_or_default()
+    }
+
+    /// The mesh in the world of each entity that shows one, in the order in which they are spawned.
+    pub(crate) fn mesh_rows(&self) -> impl Iterator<Item = usize> + Clone {
+        self.nodes.iter().flat_map(|node| &node.meshes).map(|mesh| self.first_mesh + mesh)
     }
 
     /// Its animations, in the order of the file.
@@ -68,7 +83,19 @@ pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
     let mesh_materials = meshes.iter().map(|mesh| mesh.material).collect();
     let first_mesh = append(&mut world.get_resource_or_init::<Meshes>().0, meshes);
     let animations = asset.animations.into();
-    StoredAsset { nodes: asset.nodes, lights: asset.lights, cameras: asset.cameras, animations, first_mesh, mesh_materials, materials }
+    let nodes: Arc<[Node]> = asset.nodes.into();
+    let mut by_name: Vec<usize> = (0..nodes.len()).collect();
+    by_name.sort_by_key(|index| &nodes[*index].name);
+    StoredAsset {
+        by_name: by_name.into(),
+        nodes,
+        lights: asset.lights,
+        cameras: asset.cameras,
+        animations,
+        first_mesh,
+        mesh_materials,
+        materials,
+    }
 }
 
 /// Spawns a copy of the asset's nodes below `parent` (or at the root) and returns an entity per node, in the asset's order.
@@ -76,7 +103,7 @@ pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
 /// animations, `parent` gets an [`AnimationPlayer`], or an entity of its own does where there is no parent or it has one already.
 pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entity>) -> Vec<Entity> {
     let mut entities: Vec<Entity> = Vec::with_capacity(asset.nodes.len());
-    for node in &asset.nodes {
+    for node in asset.nodes.iter() {
         let mut entity = world.spawn((Name::new(node.name.clone()), Transform(node.local)));
         if let Some(above) = node.parent.and_then(|index| entities.get(index).copied()).or(parent) {
             entity.insert(ChildOf(above));

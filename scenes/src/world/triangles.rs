@@ -6,7 +6,7 @@
 use bevy_ecs::prelude::World;
 use glam::DVec3;
 
-use super::{GlobalTransform, MeshInstance, Meshes};
+use super::{GlobalTransform, MeshInstance, Meshes, Shown};
 
 /// Triangles in world space, counter-clockwise seen from the front.
 #[derive(Debug, Clone, Default)]
@@ -22,12 +22,12 @@ pub struct Hit {
 }
 
 impl Triangles {
-    /// Those of every mesh instance. Needs propagated transforms.
+    /// Those of every mesh instance that is not hidden. Needs propagated transforms and visibility.
     pub fn of_world(world: &mut World) -> Triangles {
-        let mut query = world.query::<(&MeshInstance, &GlobalTransform)>();
+        let mut query = world.query::<(&MeshInstance, &GlobalTransform, &Shown)>();
         let Some(meshes) = world.get_resource::<Meshes>() else { return Triangles::default() };
         let mut triangles = Vec::new();
-        for (instance, transform) in query.iter(world) {
+        for (instance, transform, _) in query.iter(world).filter(|(.., shown)| shown.0) {
             let Some(mesh) = meshes.0.get(instance.mesh) else { continue };
             let transform = transform.0;
             // An odd number of mirrorings turns the winding, and glTF's front with it.
@@ -43,6 +43,14 @@ impl Triangles {
             }
         }
         Triangles::new(triangles)
+    }
+
+    /// How many there are in the world at most, before any is made.
+    pub fn count(world: &mut World) -> usize {
+        let mut query = world.query::<(&MeshInstance, &Shown)>();
+        let Some(meshes) = world.get_resource::<Meshes>() else { return 0 };
+        let shown = query.iter(world).filter(|(_, shown)| shown.0);
+        shown.filter_map(|(instance, _)| meshes.0.get(instance.mesh)).map(|mesh| mesh.indices.len() / 3).sum()
     }
 
     /// These, without those that are not finite or have no area.

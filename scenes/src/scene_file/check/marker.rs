@@ -9,9 +9,6 @@ use crate::scene_file::checks::{FAR, Problems, SMALL};
 use crate::scene_file::document::MarkerDoc;
 use crate::world::{ProbeVolume, ReflectionProbe, Volume};
 
-/// Most probes of a volume.
-const MAX_PROBES: u64 = 1 << 20;
-
 /// A marker, its place, and its parent's name.
 pub(super) fn marker(name: &str, entry: &MarkerDoc, problems: &mut Problems) -> (Kind, Affine3A, Option<Text>) {
     let of = format!("marker `{name}`");
@@ -19,12 +16,9 @@ pub(super) fn marker(name: &str, entry: &MarkerDoc, problems: &mut Problems) -> 
     match entry {
         MarkerDoc::ProbeVolume { center, counts, spacing, parent } => {
             let (x, y, z) = counts.value;
-            let probes = u64::from(x).saturating_mul(u64::from(y)).saturating_mul(u64::from(z));
-            if probes == 0 || probes > MAX_PROBES {
-                problems.add(
-                    Diagnostic::error("scene::bad-number", format!("`counts` of {of} is ({x}, {y}, {z}), {probes} probes"))
-                        .at(counts.span, format!("must be 1 to {MAX_PROBES} probes")),
-                );
+            if [x, y, z].contains(&0) {
+                let message = format!("`counts` of {of} is ({x}, {y}, {z}), which is no probe at all");
+                problems.add(Diagnostic::error("scene::bad-number", message).at(counts.span, "must be at least 1 along each axis"));
             }
             let spacing = problems.vector(&format!("`spacing` of {of}"), Some(spacing), Vec3::ONE, SMALL..=FAR);
             let center = problems.position(&format!("`center` of {of}"), center);

@@ -16,8 +16,6 @@ use crate::scene_file::document::{Number, ObjectDoc, RepeatDoc, SceneDoc, ShapeD
 
 /// Most triangles that the different primitives of a scene have together, before repetition.
 const MAX_TRIANGLES: u64 = 1 << 23;
-/// Most copies that the repetitions of a scene make together.
-const MAX_COPIES: u64 = 1 << 20;
 
 /// The shape of a primitive.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -47,7 +45,6 @@ pub(in crate::scene_file) struct Primitives {
     pub(in crate::scene_file) meshes: Vec<Mesh>,
     known: BTreeMap<[u32; 5], usize>,
     triangles: u64,
-    copies: u64,
 }
 
 impl Primitives {
@@ -64,29 +61,22 @@ impl Primitives {
         index
     }
 
-    /// Says that there is too much of everything.
+    /// Says that there is too much.
     pub(super) fn check(&self, span: Span, problems: &mut Problems) {
-        let mut too_many = |what: &str, count: u64, limit: u64, hint: &str| {
-            if count > limit {
-                problems.add(
-                    Diagnostic::error("scene::too-much", format!("the scene has {count} {what}; at most {limit} are allowed"))
-                        .at(span, "the object that is too much")
-                        .hint(hint),
-                );
-            }
-        };
-        too_many(
-            "triangles in different primitives",
-            self.triangles,
-            MAX_TRIANGLES,
-            "give fewer sectors and stacks, or shapes that are the same",
-        );
-        too_many("repeated objects", self.copies, MAX_COPIES, "give smaller counts");
+        if self.is_too_much() {
+            let message =
+                format!("the scene has {} triangles in different primitives; at most {MAX_TRIANGLES} are allowed", self.triangles);
+            problems.add(
+                Diagnostic::error("scene::too-much", message)
+                    .at(span, "the object that is too much")
+                    .hint("give fewer sectors and stacks, or shapes that are the same"),
+            );
+        }
     }
 
     /// Whether a limit is passed.
     pub(super) fn is_too_much(&self) -> bool {
-        self.triangles > MAX_TRIANGLES || self.copies > MAX_COPIES
+        self.triangles > MAX_TRIANGLES
     }
 }
 
@@ -100,7 +90,7 @@ pub(super) fn object(
     problems: &mut Problems,
 ) -> Kind {
     let of = format!("object `{}`", name.value);
-    let repeated = entry.repeat.as_ref().map(|entry| repeat(document, &of, entry, primitives, problems));
+    let repeated = entry.repeat.as_ref().map(|entry| repeat(document, &of, entry, problems));
     let own = match repeated.as_ref().and_then(|repeat| repeat.materials.first()) {
         Some(first) if entry.material.is_none() && entry.surface.is_none() => *first,
         first => object_material(document, name, entry, first.is_some(), materials, problems),
@@ -109,16 +99,11 @@ pub(super) fn object(
     Kind::Object { mesh: primitives.mesh(&name.value, shape, own), material: own, repeat: repeated }
 }
 
-fn repeat(document: &SceneDoc, of: &str, entry: &RepeatDoc, primitives: &mut Primitives, problems: &mut Problems) -> Repeat {
+fn repeat(document: &SceneDoc, of: &str, entry: &RepeatDoc, problems: &mut Problems) -> Repeat {
     let (x, y, z) = entry.count.value;
-    let copies = u64::from(x).saturating_mul(u64::from(y)).saturating_mul(u64::from(z));
-    if copies == 0 || copies > MAX_COPIES {
-        problems.add(
-            Diagnostic::error("scene::bad-number", format!("`count` of {of} is ({x}, {y}, {z}), {copies} copies"))
-                .at(entry.count.span, format!("must be 1 to {MAX_COPIES} copies")),
-        );
-    } else {
-        primitives.copies += copies;
+    if [x, y, z].contains(&0) {
+        let message = format!("`count` of {of} is ({x}, {y}, {z}), which is no copy at all");
+        problems.add(Diagnostic::error("scene::bad-number", message).at(entry.count.span, "must be at least 1 along each axis"));
     }
     let spacing = problems.vector(&format!("`spacing` of {of}"), Some(&entry.spacing), Vec3::ONE, -FAR..=FAR);
     let materials = entry.materials.iter().map(|wanted| named_material(document, of, wanted, problems)).collect();

@@ -184,6 +184,16 @@ pub enum ActionDoc {
         /// Which.
         node: Text,
     },
+    /// A node is not seen any more, nor anything below it: no shadows, no light. It stays where it is.
+    Hide {
+        /// Which.
+        node: Text,
+    },
+    /// What was hidden is seen again, unless something above it is hidden.
+    Show {
+        /// Which.
+        node: Text,
+    },
     /// A node gets another parent. What moves it ends.
     Reparent {
         /// Which.

@@ -15,17 +15,19 @@ pub struct Time(pub f64);
 
 /// Moves the world to a time in seconds, which may lie before an earlier one or be negative.
 /// Errors: `world::bad-time` if it is no finite number, `world::time-backwards` if it lies behind an event of the scene's timeline
-/// that has happened; nothing has changed then. What an event can't do, because somebody removed its node; those before it are done.
+/// that has happened; nothing has changed then. `world::unknown-node` and `world::flat-parent`, one for each event on the way that
+/// could not happen, because somebody removed its node or nothing can keep its place; all else has happened, the world stands at the
+/// time, and can go on from there.
 pub fn set_time(world: &mut World, seconds: f64) -> Result<(), Vec<Diagnostic>> {
     if !seconds.is_finite() {
         return Err(vec![Diagnostic::error("world::bad-time", format!("the time is {seconds}, which is no finite number"))]);
     }
-    timeline::advance(world, seconds, settle)?;
+    let failed = timeline::advance(world, seconds, settle).map_err(|refused| vec![refused])?;
     settle(world, seconds);
     if world.get_resource::<Time>() != Some(&Time(seconds)) {
         world.insert_resource(Time(seconds));
     }
-    Ok(())
+    if failed.is_empty() { Ok(()) } else { Err(failed) }
 }
 
 /// Places everything that moves by itself.
