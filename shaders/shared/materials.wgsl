@@ -21,7 +21,6 @@ struct Material {
     flags: u32,
     // Bit i: texture i is looked up with the second set of texture coordinates.
     uv_sets: u32,
-    alpha_unused: f32,
     // KHR_texture_transform of texture i: rows [2 i] and [2 i + 1] of a 2x3 matrix, applied to (u, v, 1).
     uv_transforms: array<vec4<f32>, 14>,
 }

@@ -73,9 +73,10 @@ impl Publisher {
         let solid = self.objects.solid_bounds;
         let frusta = |view| match view {
             ViewKind::DirectionalLight(light) => {
-                let to_light = lights.to_sun(light);
-                let maps = request.views.iter().filter(|request| request.kind == view);
-                maps.map(|map| sun::fit(to_light, &camera, solid, [map.width, map.height]).casters).collect()
+                // A light that is not there has no shadows.
+                let sun = lights.suns.get(light as usize).copied().flatten();
+                let maps = request.views.iter().filter(|request| request.kind == view && sun.is_some());
+                maps.map(|map| sun::fit(lights.to_sun(light), &camera, solid, [map.width, map.height]).casters).collect()
             }
             ViewKind::Camera | ViewKind::LocalLight(..) => vec![Frustum::of_camera(&camera)],
         };

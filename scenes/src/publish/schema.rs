@@ -27,7 +27,7 @@ pub const COUNT_NAMES: [&str; 7] = ["directional_lights", "point_lights", "spot_
 /// Tables of which a Draw sees what it draws.
 const PER_DRAW: [&str; 3] = ["instances", "instance_slots", "materials"];
 
-/// Members with their offsets, which come from the struct itself.
+/// Members with their offsets, which come from the struct itself. What pads it is no member.
 macro_rules! members {
     ($row:ty { $($name:ident: $wgsl:literal),* $(,)? }) => {
         vec![$(TableMember {
@@ -79,7 +79,6 @@ pub fn schema() -> PublishedSchema {
             inverse_light_unit: "f32",
             directional_count: "u32",
             local_count: "u32",
-            padding: "u32",
         }),
     );
     add(
@@ -110,7 +109,6 @@ pub fn schema() -> PublishedSchema {
             spot_scale: "f32",
             spot_offset: "f32",
             reach: "f32",
-            pad: "f32",
         }),
     );
     add(
@@ -125,8 +123,6 @@ pub fn schema() -> PublishedSchema {
             normal_from_object_2: "vec4<f32>",
             material: "u32",
             object: "u32",
-            pad0: "u32",
-            pad1: "u32",
         }),
     );
     add("instance_slots", TableKind::Storage, "Row of `instances` for each instance index of a draw.", size_of::<u32>(), Vec::new());
@@ -148,7 +144,6 @@ pub fn schema() -> PublishedSchema {
             ior: "f32",
             flags: "u32",
             uv_sets: "u32",
-            alpha_unused: "f32",
             uv_transforms: "array<vec4<f32>, 14>",
         }),
     );

@@ -7,7 +7,7 @@
 use glam::Vec3;
 use libtest_mimic::Failed;
 use luminaire::scenes::asset::AlphaMode;
-use luminaire::scenes::world::{Camera, Cone, DirectionalLight, Exposure, LocalLight, Materials, World};
+use luminaire::scenes::world::{Camera, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, World, find_by_name};
 
 use super::{Change, check, edit, go_to, place, take_away};
 
@@ -78,7 +78,13 @@ const CHANGES: &[Change] = &[
     ("a box that is removed", |world| go_to(world, 5.0)),
     ("another parent, at the same place", |world| go_to(world, 6.0)),
     ("another parent's place", |world| go_to(world, 7.0)),
+    ("a lamp that is hidden", |world| hide(world, "second")),
+    ("a lamp that is shown", |world| show(world, "second")),
+    ("a box that is hidden", |world| hide(world, "below first")),
+    ("a box that is shown", |world| show(world, "below first")),
     ("the time of day", |world| go_to(world, 8.0)),
+    ("a sun that is hidden", |world| hide(world, "sun")),
+    ("a sun that is shown", |world| show(world, "sun")),
     ("a lamp that is taken away", |world| take_away(world, "first")),
     ("a box that is taken away", |world| take_away(world, "between")),
 ];
@@ -87,6 +93,18 @@ fn material(world: &mut World, name: &str, change: impl Fn(&mut luminaire::scene
     let mut materials = world.resource_mut::<Materials>();
     let found = materials.0.iter_mut().find(|material| material.name == name).ok_or("no such material")?;
     change(found);
+    Ok(())
+}
+
+fn hide(world: &mut World, name: &str) -> Result<(), Failed> {
+    let entity = find_by_name(world, name).map_err(|problem| problem.message)?;
+    world.entity_mut(entity).insert(Hidden);
+    Ok(())
+}
+
+fn show(world: &mut World, name: &str) -> Result<(), Failed> {
+    let entity = find_by_name(world, name).map_err(|problem| problem.message)?;
+    world.entity_mut(entity).remove::<Hidden>();
     Ok(())
 }
 
