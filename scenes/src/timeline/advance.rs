@@ -12,8 +12,9 @@ use crate::scene_file::{play_clip, spawn};
 use crate::world::Hidden;
 
 /// Brings the world to a time: stops at every event on the way, where `settle` brings all that moves by itself to that time
-/// first, and leaves running changes at `now`. A scene without a timeline stays as it is. Returns what events could not do, each by
-/// itself: one that can't happen changes nothing, and keeps no other from happening.
+/// first (and what the timeline moves is brought there if something gets another parent), and leaves running changes at `now`. A scene
+/// without a timeline stays as it is. Returns what events could not do, each by itself: one that can't happen changes nothing, and keeps
+/// no other from happening.
 /// Errors: `world::time-backwards` behind an event that has happened; nothing has changed then.
 pub(crate) fn advance(world: &mut World, now: f64, mut settle: impl FnMut(&mut World, f64)) -> Result<Vec<Diagnostic>, Diagnostic> {
     let Some(mut timeline) = world.remove_resource::<Timeline>() else { return Ok(Vec::new()) };
@@ -33,7 +34,11 @@ impl Timeline {
             let is_first_of_moment =
                 self.happened.checked_sub(1).and_then(|last| self.events.get(last)).is_none_or(|last| last.at < event.at);
             if is_first_of_moment {
-                self.evaluate(world, event.at);
+                // Where things stand matters to no other event: a change of what is running goes on from its own value.
+                let moment = self.events.iter().skip(self.happened).take_while(|other| other.at == event.at);
+                if moment.into_iter().any(|other| matches!(other.action, Action::Reparent { .. })) {
+                    self.evaluate(world, event.at);
+                }
                 settle(world, event.at);
             }
             self.happened += 1;
