@@ -22,6 +22,7 @@ static SCENES: &[(&str, &str)] = &[
     ("scene1.ron", include_str!("../scenes/scene1.ron")),
     ("scene2.ron", include_str!("../scenes/scene2.ron")),
     ("spawned.ron", include_str!("../scenes/spawned.ron")),
+    ("sun_path.ron", include_str!("../scenes/sun_path.ron")),
     ("wall_removed.ron", include_str!("../scenes/wall_removed.ron")),
 ];
 

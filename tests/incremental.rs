@@ -44,6 +44,8 @@ impl Case<'_> {
 
 const PBR: Case<'_> = Case { pipeline: "pipelines/pbr.ron", lights: 2, sets: &[], outputs: &["color"], size: [64, 64] };
 
+const SKY: Case<'_> = Case { pipeline: "pipelines/sky.ron", lights: 0, sets: &[], outputs: &["color"], size: [64, 64] };
+
 /// After its first frame.
 fn settled(case: &Case<'_>) -> Harness {
     let mut harness = case.compile(Harness::new).unwrap_or_else(|problems| panic!("{problems}"));
@@ -102,6 +104,22 @@ fn another_output_runs_what_it_alone_needs() {
     let ran = harness.frame();
     assert!(ran.iter().any(|name| name == "inspect"), "{ran:?}");
     assert!(!ran.iter().any(|name| name.starts_with("shadows.local") || name == "display.expose"), "{ran:?}");
+}
+
+#[test]
+fn a_camera_that_turns_draws_the_same_sky() {
+    let mut harness = settled(&SKY);
+    assert!(harness.change_table("camera") > 0);
+    assert_eq!(harness.frame(), ["draw", "display.expose"]);
+}
+
+#[test]
+fn a_sun_that_turns_leaves_what_the_air_alone_decides() {
+    let mut harness = settled(&SKY);
+    assert!(harness.change_table("directional_lights") > 0);
+    assert_eq!(harness.frame(), ["sky.look", "sky.gather", "draw", "display.expose"]);
+    Case { sets: &[("ground_albedo", "0.6,0.6,0.6")], ..SKY }.compile(|input| harness.replan(input)).unwrap();
+    assert_eq!(harness.frame(), ["sky.scatter", "sky.look", "sky.gather", "draw", "display.expose"]);
 }
 
 #[test]

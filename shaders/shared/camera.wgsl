@@ -34,6 +34,16 @@ fn direction_to_camera(position: vec3<f32>) -> vec3<f32> {
     return direction_to_eye(camera.projection_from_world, camera.position, camera.forward, position);
 }
 
+// Unit vector from the camera through a place of the image. Taken from infinitely far away (or the far plane), so that it is as good
+// anywhere in the world.
+fn direction_through(uv: vec2<f32>) -> vec3<f32> {
+    let far = camera.world_from_projection * vec4<f32>(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 0.0, 1.0);
+    if is_orthographic(camera.projection_from_world) {
+        return camera.forward;
+    }
+    return normalize(far.xyz - camera.position * far.w);
+}
+
 // Metres from the camera, along the axis on which it looks.
 fn distance_along_axis(position: vec3<f32>) -> f32 {
     return dot(position - camera.position, camera.forward);

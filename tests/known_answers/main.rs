@@ -17,6 +17,7 @@ mod noon;
 mod orientation;
 mod runs;
 mod shadows;
+mod sky;
 mod steady;
 mod tone_mapping;
 
@@ -28,7 +29,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 11] = [
+    let groups: [&[Case]; 12] = [
         brdf::CASES,
         changes::CASES,
         irradiance::CASES,
@@ -38,6 +39,7 @@ fn main() {
         orientation::CASES,
         runs::CASES,
         shadows::CASES,
+        sky::CASES,
         steady::CASES,
         tone_mapping::CASES,
     ];
