@@ -23,6 +23,7 @@ const GOLDEN: &[Golden] = &[
     ("pbr_still_life", PBR, "still_life", &[]),
     ("pbr_still_life_neutral", PBR, "still_life", &[("tone_mapping", "neutral"), ("exposure", "0.5")]),
     ("pbr_night_room", PBR, "night_room", &[]),
+    ("sky_low_sun", "pipelines/sky.ron", "low_sun", &[]),
     ("pbr_night_room_aces", PBR, "night_room", &[("tone_mapping", "aces"), ("shadowed_local_lights", "1")]),
 ];
 

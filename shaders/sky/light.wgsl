@@ -48,7 +48,7 @@ fn collect(@builtin(local_invocation_index) thread: u32) {
     }
     sky *= (PI / f32(THREADS)) * (0.5 * PI / f32(RINGS));
     let sun = sun_transmittance(altitude, sun_sine, params.mie_scale);
-    let ground = params.ground_albedo / PI * (sky + sun * max(sun_sine, 0.0));
+    let ground = saturate(params.ground_albedo) / PI * (sky + sun * max(sun_sine, 0.0));
     textureStore(light, vec2<i32>(SUN_HERE, 0), vec4<f32>(sun, altitude));
     textureStore(light, vec2<i32>(SKY_HERE, 0), vec4<f32>(sky, params.mie_scale));
     textureStore(light, vec2<i32>(GROUND_HERE, 0), vec4<f32>(ground, 1.0));

@@ -51,7 +51,7 @@ fn gather(at: PlaceAndSun, sine: f32, azimuth_cosine: f32, down: bool) -> Gather
     if down {
         let ground = point_along(at.altitude, sine, at.sun_sine, sun_cosine, distance);
         let sun = sun_transmittance(0.0, ground.sun_sine, params.mie_scale) * max(ground.sun_sine, 0.0);
-        sum.light += exp(-depth) * params.ground_albedo / PI * sun;
+        sum.light += exp(-depth) * saturate(params.ground_albedo) / PI * sun;
     }
     return sum;
 }

@@ -5,7 +5,8 @@
 // elevation alone.
 //
 // The light of dusk falls by half within a degree of the sun's way. So the table holds logarithms, and most of its columns stand near a
-// sun at the horizon; they end at -0.4, about 24 degrees below it, after which there is no light.
+// sun at the horizon; they end at -0.4, about 24 degrees below it, after which there is no light. The paper's 32 columns are off by up to
+// 2.4 % at dusk and sunset; 64 keep the sky within 1 %.
 
 #import "sky/interpolate.wgsl"
 #import "sky/shell.wgsl"
