@@ -7,9 +7,9 @@ use glam::{DVec3, Vec3};
 use luminaire_graph::published::{ViewKind, ViewRequest};
 
 use super::layout::{DirectionalRow, LocalRow};
-use super::projection::{CameraView, single, vector};
+use super::projection::{single, vector};
 use super::reach::{Reach, reach};
-use super::sun;
+use super::sun::SunView;
 use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, Environment, GlobalTransform, LocalLight, LocalSlot, Shown, rigid_axes};
 
 /// A directional light in world space.
@@ -85,7 +85,7 @@ impl Lights {
     }
 
     /// The table `directional_lights`; shadow members come from the first requested view of a light.
-    pub(super) fn directional_rows(&self, camera: &CameraView, bounds: Option<Aabb>, views: &[ViewRequest]) -> Vec<DirectionalRow> {
+    pub(super) fn directional_rows(&self, views: &[ViewRequest], fitted: &[Option<SunView>]) -> Vec<DirectionalRow> {
         let row = |(index, sun): (usize, &Option<Sun>)| {
             let Some(sun) = sun else { return DirectionalRow::default_row() };
             let mut row = DirectionalRow {
@@ -93,9 +93,8 @@ impl Lights {
                 illuminance: sun.illuminance.to_array(),
                 ..DirectionalRow::default_row()
             };
-            let wanted = |view: &&ViewRequest| matches!(view.kind, ViewKind::DirectionalLight(light) if light as usize == index);
-            if let Some(view) = views.iter().find(wanted) {
-                let fitted = sun::fit(sun.to_light, camera, bounds, [view.width, view.height]);
+            let wanted = |view: &ViewRequest| matches!(view.kind, ViewKind::DirectionalLight(light) if light as usize == index);
+            if let Some(fitted) = views.iter().zip(fitted).find_map(|(view, fitted)| fitted.as_ref().filter(|_| wanted(view))) {
                 row.shadow_texel_size = single(fitted.texel_size);
                 row.shadow_depth_range = single(fitted.depth_range);
                 row.shadow_from_world = fitted.table.projection_from_world;

@@ -15,9 +15,10 @@ use super::geometry::{self, Geometry};
 use super::objects::Objects;
 use super::projection::CameraView;
 use super::request::{self, PublishRequest, Published};
+use super::sun::SunView;
 use super::texture_cache::TextureCache;
 use super::visible::Visible;
-use super::{environment, lights, materials, sun};
+use super::{environment, lights, materials};
 use crate::world::{Environment, Materials, Meshes, camera_pose, update};
 
 /// Publishes a world, and remembers what it published.
@@ -71,12 +72,13 @@ impl Publisher {
         };
         let camera = CameraView::new(pose, request.aspect());
         let solid = self.objects.solid_bounds;
+        let suns: Vec<Option<SunView>> = request.views.iter().map(|view| request::sun_view(view, &camera, &lights, solid)).collect();
         let frusta = |view| match view {
             ViewKind::DirectionalLight(light) => {
                 // A light that is not there has no shadows.
                 let sun = lights.suns.get(light as usize).copied().flatten();
-                let maps = request.views.iter().filter(|request| request.kind == view && sun.is_some());
-                maps.map(|map| sun::fit(lights.to_sun(light), &camera, solid, [map.width, map.height]).casters).collect()
+                let maps = request.views.iter().zip(&suns).filter(|(request, _)| request.kind == view && sun.is_some());
+                maps.filter_map(|(_, map)| map.as_ref().map(|map| map.casters.clone())).collect()
             }
             ViewKind::Camera | ViewKind::LocalLight(..) => vec![Frustum::of_camera(&camera)],
         };
@@ -90,13 +92,16 @@ impl Publisher {
                 Distance::From(lights.lamps.get(light as usize).copied().flatten().map_or(DVec3::ZERO, |lamp| lamp.position))
             }
         });
-        let view_bytes = |view| bytemuck::bytes_of(&request::view_table(view, &camera, &lights, solid)).to_vec();
-        let views = request.views.iter().map(view_bytes).collect();
+        let view_bytes = |(view, sun): (_, &Option<SunView>)| {
+            let table = sun.as_ref().map_or_else(|| request::view_table(view, &camera, &lights), |sun| sun.table);
+            bytemuck::bytes_of(&table).to_vec()
+        };
+        let views = request.views.iter().zip(&suns).map(view_bytes).collect();
         let environment = *world.get_resource_or_init::<Environment>();
         let environment = environment::table(environment, &lights, &materials, bounds);
         self.set("camera", &[camera.table()]);
         self.set("environment", &[environment]);
-        self.set("directional_lights", &lights.directional_rows(&camera, solid, request.views));
+        self.set("directional_lights", &lights.directional_rows(request.views, &suns));
         self.set("local_lights", &lights.local_rows());
         if !same_materials || !self.tables.contains_key("materials") {
             self.set("materials", &materials::rows(&materials));

@@ -4,10 +4,11 @@ use glam::DVec3;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{DrawFilter, PublishedScene, ViewKind, ViewRequest};
 
+use super::cube;
 use super::layout::ViewTable;
 use super::lights::Lights;
 use super::projection::CameraView;
-use super::{cube, sun};
+use super::sun::{self, SunView};
 use crate::world::Aabb;
 
 /// Everything that a plan needs of a scene.
@@ -66,11 +67,16 @@ pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights) -> Vec<Diagno
         .collect()
 }
 
-/// The table of a view. Lights that are not there look down from the origin.
-pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights, bounds: Option<Aabb>) -> ViewTable {
+/// The view of a directional light, fitted; `None` if it is another one's.
+pub(super) fn sun_view(view: &ViewRequest, camera: &CameraView, lights: &Lights, bounds: Option<Aabb>) -> Option<SunView> {
+    let ViewKind::DirectionalLight(light) = view.kind else { return None };
+    Some(sun::fit(lights.to_sun(light), camera, bounds, [view.width, view.height]))
+}
+
+/// The table of a view that is no directional light's. Lights that are not there look down from the origin.
+pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights) -> ViewTable {
     match view.kind {
-        ViewKind::Camera => camera.view(),
-        ViewKind::DirectionalLight(light) => sun::fit(lights.to_sun(light), camera, bounds, [view.width, view.height]).table,
+        ViewKind::Camera | ViewKind::DirectionalLight(_) => camera.view(),
         ViewKind::LocalLight(light, face) => {
             let lamp = lights.lamps.get(light as usize).copied().flatten();
             let (position, planes) = lamp.map_or((DVec3::ZERO, [0.01, 1.0]), |lamp| (lamp.position, lamp.reach.planes));
