@@ -129,19 +129,21 @@ fn moving_and_completed() -> Result<(), Failed> {
 /// A pipeline that adds 0.2 to its picture each time that it runs, in `folder`.
 fn fade(folder: &Path, run: &str) -> Result<PathBuf, Failed> {
     let text = format!(
-        "(doc: \"Adds to itself.\", resources: {{\"color\": Texture(format: \"rgba8unorm\", clear: Zero)}}, passes: {{\"add\": Fullscreen(\
-         shader: \"add.wgsl\", run: {run}, blend: {{\"color\": Add}}, modify: {{\"color\": \"color\"}})}}, outputs: {{\"color\": \"color\"}})"
+        "(doc: \"Adds to itself.\", resources: {{\"color\": Texture(format: \"rgba8unorm\", history: (first: Zero))}}, passes: {{\"add\": \
+         Fullscreen(shader: \"add.wgsl\", run: {run}, read: {{\"old\": \"previous(color)\"}}, write: {{\"color\": \"color\"}})}}, outputs: \
+         {{\"color\": \"color\"}})"
     );
-    let shader = "struct Targets { color: vec4<f32> }\n@fragment fn add() -> Targets { return Targets(vec4<f32>(0.2)); }\n";
+    let shader = "var old: texture_2d<f32>;\nstruct Targets { color: vec4<f32> }\n@fragment fn add(@builtin(position) place: vec4<f32>) -> \
+                  Targets { return Targets(textureLoad(old, vec2<i32>(place.xy), 0) + 0.2); }\n";
     std::fs::write(folder.join("add.wgsl"), shader)?;
     std::fs::write(folder.join("fade.ron"), text)?;
     Ok(folder.join("fade.ron"))
 }
 
-/// Where frames depend on those before them, each runs once, behind `--warm-up` of them; and to complete a sequence runs it again.
+/// Where a pass runs in every frame, each frame runs once, behind `--warm-up` of them; and to complete a sequence runs it again.
 fn frames_that_gather() -> Result<(), Failed> {
     let folder = tempfile::tempdir()?;
-    let pipeline = fade(folder.path(), "Accumulate(4)")?;
+    let pipeline = fade(folder.path(), "EveryFrame")?;
     let pattern = folder.path().join("out/%d.png");
     let stats = folder.path().join("stats.json");
     let fixed = ["render", text(&pipeline)?, "--scene", CORNELL, "-o", text(&pattern)?, "--size", "4x4", "--stats", text(&stats)?];
@@ -162,7 +164,7 @@ fn frames_that_gather() -> Result<(), Failed> {
     render(&["--frames", "0..3"])?;
     expect("from the first frame", &[("0.png", 124), ("1.png", 170), ("2.png", 203)])?;
     render(&["--frames", "0..3", "--overwrite", "--warm-up", "2"])?;
-    expect("after two frames", &[("0.png", 203), ("1.png", 231), ("2.png", 231)])?;
+    expect("after two frames", &[("0.png", 203), ("1.png", 231), ("2.png", 255)])?;
 
     // What exists is not written, and what is missing comes after the same frames as before.
     render(&["--frames", "0..3", "--overwrite"])?;
@@ -176,10 +178,10 @@ fn frames_that_gather() -> Result<(), Failed> {
         return Err(format!("the statistics say {stats}").into());
     }
 
-    // A pass that runs in every frame never settles, and a sequence needs no number of frames for it.
-    fade(folder.path(), "EveryFrame")?;
-    render(&["--frames", "0..=0", "--overwrite"])?;
-    Ok(())
+    // What gathers and comes to an end does so in each frame.
+    fade(folder.path(), "Accumulate(4)")?;
+    render(&["--frames", "0..3", "--overwrite"])?;
+    expect("gathered", &[("0.png", 231), ("1.png", 231), ("2.png", 231)])
 }
 
 /// What exists stays, unless all is to be rendered anew; what a killed program left half-written goes.

@@ -2,10 +2,13 @@
 
 #import "shared/forward_surface.wgsl"
 #import "shared/gbuffer.wgsl"
+#import "shared/jitter.wgsl"
 
 @vertex
 fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
-    return transform_mesh_vertex(vertex, instance_index);
+    var fragment = transform_mesh_vertex(vertex, instance_index);
+    fragment.clip_position = jittered(fragment.clip_position);
+    return fragment;
 }
 
 @fragment

@@ -2,6 +2,7 @@
 
 #import "shared/direct_light.wgsl"
 #import "shared/gbuffer_textures.wgsl"
+#import "shared/jitter.wgsl"
 
 struct Targets {
     // Radiance / light_unit.
@@ -15,6 +16,6 @@ fn shade(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> Tar
     if stored_depth == NOTHING_THERE {
         return Targets(vec4<f32>(fit_half(environment.sky_radiance * environment.inverse_light_unit), 1.0));
     }
-    let point = load_gbuffer(texel, uv, stored_depth);
+    let point = load_gbuffer(texel, unjittered_uv(uv), stored_depth);
     return Targets(vec4<f32>(fit_half(emitted_and_direct_light(point)), 1.0));
 }

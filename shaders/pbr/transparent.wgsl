@@ -2,6 +2,7 @@
 
 #import "shared/direct_light.wgsl"
 #import "shared/forward_surface.wgsl"
+#import "shared/jitter.wgsl"
 
 struct Targets {
     // Radiance / light_unit, and how much of what is behind is covered.
@@ -10,7 +11,9 @@ struct Targets {
 
 @vertex
 fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
-    return transform_mesh_vertex(vertex, instance_index);
+    var fragment = transform_mesh_vertex(vertex, instance_index);
+    fragment.clip_position = jittered(fragment.clip_position);
+    return fragment;
 }
 
 @fragment

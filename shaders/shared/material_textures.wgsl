@@ -30,6 +30,9 @@ const EMISSIVE: u32 = 4u;
 const SPECULAR: u32 = 5u;
 const SPECULAR_COLOR: u32 = 6u;
 
+// How many mip levels finer than the distance of pixels asks for: where n samples are averaged in each pixel, log2(n) / 2.
+override texture_detail: f32 = 0.0;
+
 // Where to look up a texture, and how that place changes to the neighbours, which chooses the mip level.
 struct TexturePlace {
     at: vec2<f32>,
@@ -43,8 +46,9 @@ struct TexturePlace {
 // `materials`, and where a neighbour lies outside of the triangle some drivers read zeros for it: a wrong mip level along
 // every edge.
 fn texture_place(material: u32, index: u32, uv: vec4<f32>) -> TexturePlace {
-    let uv_dx = dpdx(uv);
-    let uv_dy = dpdy(uv);
+    let scale = exp2(-texture_detail);
+    let uv_dx = dpdx(uv) * scale;
+    let uv_dy = dpdy(uv) * scale;
     let second_set = ((materials[material].uv_sets >> index) & 1u) != 0u;
     let row_u = materials[material].uv_transforms[2u * index].xyz;
     let row_v = materials[material].uv_transforms[2u * index + 1u].xyz;

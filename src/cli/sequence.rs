@@ -1,8 +1,9 @@
 //! `luminaire render --frames 0..120`: one image for each frame, the scene at the frame's time.
 //!
-//! Guarantees: where no frame depends on those before it ([`Plan::carries_over`]), each runs until it has settled, so that its file has
-//! the bytes that it has alone, and frames whose file is there already are left out. Where one does, each frame of the range runs once,
-//! from the first on, whatever is there already; only files are left out. So a sequence that was interrupted ends with the same files.
+//! Guarantees: each frame runs until it has settled, or once if some pass runs in every frame. Where no frame depends on those before it
+//! ([`Plan::carries_over`]), its file has the bytes that it has alone, and frames whose file is there already are left out. Where one
+//! does, each frame of the range runs, from the first on, whatever is there already; only files are left out. So a sequence that was
+//! interrupted ends with the same files.
 //! Things may come and go: the pipeline is compiled for each number of lights and the like before the first frame, so that what is wrong
 //! with one of them is said before hours of rendering.
 //!
@@ -66,7 +67,8 @@ pub(super) fn render(mut job: Job<'_>) -> Result<Option<Value>, Problems> {
                 memory = memory.map(|_| stats::memory(&session));
             }
             let frame_started = Instant::now();
-            let mut executed = execute(&mut session, carries_over.then_some(1), |_| ())?;
+            let once = session.never_settles().then_some(1);
+            let mut executed = execute(&mut session, once, |_| ())?;
             let path = sequence.due.binary_search(&frame).is_ok().then(|| sequence.pattern.path(frame));
             if let Some(path) = &path {
                 let image = session.read_output(job.output)?;

@@ -19,6 +19,7 @@ mod runs;
 mod shadows;
 mod sky;
 mod steady;
+mod supersample;
 mod tone_mapping;
 
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -29,7 +30,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 12] = [
+    let groups: [&[Case]; 13] = [
         brdf::CASES,
         changes::CASES,
         irradiance::CASES,
@@ -41,6 +42,7 @@ fn main() {
         shadows::CASES,
         sky::CASES,
         steady::CASES,
+        supersample::CASES,
         tone_mapping::CASES,
     ];
     let mut trials: Vec<Trial> = groups.concat().into_iter().map(|(name, run)| support::trial(name, missing, run)).collect();

@@ -51,25 +51,6 @@ pub fn read_exr(path: &Path) -> LinearImage {
     LinearImage { width: image.width(), height: image.height(), texels, components: 3 }
 }
 
-/// The mean over blocks of `factor` by `factor` texels.
-pub fn box_filter(image: &LinearImage, factor: u32) -> LinearImage {
-    let (width, height) = (image.width / factor, image.height / factor);
-    let texel = |x: u32, y: u32| {
-        let mut sum = [0.0f64; 4];
-        for v in y * factor..(y + 1) * factor {
-            for u in x * factor..(x + 1) * factor {
-                let texel = image.texels[(v * image.width + u) as usize];
-                for channel in 0..4 {
-                    sum[channel] += f64::from(texel[channel]);
-                }
-            }
-        }
-        sum.map(|channel| (channel / f64::from(factor * factor)) as f32)
-    };
-    let texels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| texel(x, y)).collect();
-    LinearImage { width, height, texels, components: image.components }
-}
-
 /// How far an image is from a reference; the definitions of relMSE with an epsilon of 0.01 times the squared mean.
 #[derive(Debug, Clone, Copy)]
 pub struct Difference {

@@ -90,23 +90,35 @@ impl Shot {
         Session::on(adapter, world, &self.request()).map_err(shown)
     }
 
-    /// One frame of a world.
+    /// A world, when nothing changes any more.
     pub fn take_world(&self, world: &mut World) -> Result<BTreeMap<String, LinearImage>, Failed> {
         let mut session = self.session(world)?;
-        session.render_frame().map_err(shown)?;
+        settle(&mut session)?;
         self.outputs.iter().map(|name| Ok((name.clone(), session.read_output(name).map_err(shown)?))).collect()
     }
 
-    /// One frame of a scene file's text.
+    /// A scene file's text.
     pub fn take(&self, scene: &str) -> Result<BTreeMap<String, LinearImage>, Failed> {
         self.take_world(&mut world(scene)?)
     }
 
-    /// The first output of one frame.
+    /// The first output.
     pub fn one(&self, scene: &str) -> Result<LinearImage, Failed> {
         let mut images = self.take(scene)?;
         images.remove(&self.outputs[0]).ok_or_else(|| "no output".into())
     }
+}
+
+/// Renders until nothing changes any more, and tells what ran in each frame but the last, in which nothing did.
+pub fn settle(session: &mut Session) -> Result<Vec<Vec<String>>, Failed> {
+    let mut frames = Vec::new();
+    while !session.render_frame().map_err(shown)?.settled {
+        frames.push(session.ran().into_iter().map(str::to_owned).collect());
+        if frames.len() > 100_000 {
+            return Err(format!("it never settles: {:?} ran in the last frame", frames.last()).into());
+        }
+    }
+    Ok(frames)
 }
 
 /// A texel, in double precision.

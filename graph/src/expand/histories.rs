@@ -1,5 +1,7 @@
 //! The past of resources: a resource of the same shape for each, and the pass that fills it.
 
+use std::collections::BTreeSet;
+
 use super::types::{ClearValue, History, Keep, Located, PartRef, Pass, PassKind, Resource, ResourceId, Run, Slot};
 use crate::validate::types::ResourceDecl;
 
@@ -19,11 +21,16 @@ pub(super) fn resources(histories: &[Located<ResourceId>], declared: &[ResourceD
     }
 }
 
-/// Adds the pass that fills each history. It has the history's name.
+/// Adds the pass that fills each history that some pass reads: one in a block that does not stand has nothing to remember. It has the
+/// history's name.
 pub(super) fn passes(histories: &[Located<ResourceId>], resources: &[Resource], passes: &mut Vec<Pass>) {
     let first = resources.len() - histories.len();
+    let read: BTreeSet<ResourceId> = passes.iter().flat_map(|pass| &pass.reads).map(|slot| slot.part.resource).collect();
     for (index, (history, resource)) in histories.iter().zip(&resources[first..]).enumerate() {
         let span = history.span;
+        if !read.contains(&ResourceId((first + index) as u32)) {
+            continue;
+        }
         let part = PartRef { resource: ResourceId((first + index) as u32), mips: None, layers: None, version: None, span };
         passes.push(Pass {
             name: resource.name.as_str().into(),
