@@ -18,6 +18,7 @@ use crate::draw::DrawStep;
 use crate::errors::{Subject, catch};
 use crate::fullscreen::FullscreenStep;
 use crate::poison;
+use crate::procedural::ProceduralStep;
 use crate::remember::{Carried, RememberStep};
 use crate::scene_data::SceneData;
 use crate::store::Store;
@@ -27,6 +28,7 @@ use crate::timing::{FrameCounts, Stamps, Timing};
 #[derive(Debug)]
 enum Prepared {
     Draw(Box<DrawStep>),
+    Procedural(ProceduralStep),
     Fullscreen(FullscreenStep),
     Compute(ComputeStep),
     Copy(CopyStep),
@@ -195,6 +197,7 @@ impl Backend for WgpuBackend {
         if let (Some(prepared), Some(encoder)) = (steps.get(run.step).and_then(Option::as_ref), encoder) {
             let groups = match prepared {
                 Prepared::Draw(step) => Some(step.groups()),
+                Prepared::Procedural(step) => Some(step.groups()),
                 Prepared::Fullscreen(step) => Some(step.groups()),
                 Prepared::Compute(step) => Some(step.groups()),
                 Prepared::Copy(_) | Prepared::Clear(_) | Prepared::Remember(_) => None,
@@ -259,6 +262,7 @@ impl WgpuBackend {
 fn prepare_step(store: &mut Store, plan: &Plan, step: &Step, subject: &Subject) -> Result<Prepared, Diagnostic> {
     Ok(match &step.kind {
         StepKind::Draw { .. } => Prepared::Draw(Box::new(DrawStep::prepare(store, plan, step)?)),
+        StepKind::Procedural { .. } => Prepared::Procedural(ProceduralStep::prepare(store, plan, step)?),
         StepKind::Fullscreen { fragment, targets } => Prepared::Fullscreen(FullscreenStep::prepare(store, plan, step, fragment, targets)?),
         StepKind::Compute { entry, groups } => Prepared::Compute(ComputeStep::prepare(store, plan, step, entry, *groups)?),
         StepKind::Copy { source, target } => Prepared::Copy(CopyStep::prepare(store, plan, step, source, target)?),
@@ -277,6 +281,7 @@ fn encode(
 ) {
     match prepared {
         Prepared::Draw(step) => step.encode(encoder, &store.scene, stamps, counts),
+        Prepared::Procedural(step) => step.encode(encoder, stamps, counts),
         Prepared::Fullscreen(step) => step.encode(encoder, stamps, counts),
         Prepared::Compute(step) => step.encode(encoder, iterations, stamps, counts),
         Prepared::Copy(step) => step.encode(encoder),

@@ -48,7 +48,7 @@ impl DrawStep {
             return Err(subject.error("execute::kind", "it is no Draw"));
         };
         let groups = store.groups(plan, step)?;
-        let stage = VertexStage::Scene { entry: vertex.clone(), attributes: attributes.clone() };
+        let stage = VertexStage::Own { entry: vertex.clone(), attributes: attributes.clone() };
         let key = RenderKey::new(plan, step, groups.layouts, stage, fragment.as_deref(), targets);
         let attachments = store.attachments(plan, step, targets)?;
         // The usual class is always created, so that a shader that fails does so even where the scene shows nothing.

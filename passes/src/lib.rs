@@ -22,6 +22,7 @@ mod kept;
 mod layouts;
 mod pipelines;
 pub mod poison;
+mod procedural;
 mod readback;
 mod remember;
 mod revisions;

@@ -22,8 +22,8 @@ use crate::layouts::{GroupLayouts, Layouts};
 pub(crate) enum VertexStage {
     /// One triangle over all texels.
     Fullscreen,
-    /// An entry point of the step's shader, with the attributes by location.
-    Scene { entry: String, attributes: Vec<String> },
+    /// An entry point of the step's shader, with the attributes by location; none where it makes its vertices itself.
+    Own { entry: String, attributes: Vec<String> },
 }
 
 /// Everything that a render pipeline is made from.
@@ -155,7 +155,7 @@ impl Pipelines {
         let options = wgpu::PipelineCompilationOptions { constants: &constants, ..Default::default() };
         let attributes = match &key.vertex {
             VertexStage::Fullscreen => Vec::new(),
-            VertexStage::Scene { attributes, .. } => vertex_attributes(subject, schema, attributes)?,
+            VertexStage::Own { attributes, .. } => vertex_attributes(subject, schema, attributes)?,
         };
         let buffers = [Some(wgpu::VertexBufferLayout {
             array_stride: u64::from(schema.stride),
@@ -169,7 +169,7 @@ impl Pipelines {
                 compilation_options: wgpu::PipelineCompilationOptions::default(),
                 buffers: &[],
             },
-            VertexStage::Scene { entry, attributes } => wgpu::VertexState {
+            VertexStage::Own { entry, attributes } => wgpu::VertexState {
                 module: &module,
                 entry_point: Some(entry),
                 compilation_options: options.clone(),

@@ -17,5 +17,5 @@ fn shade(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> Tar
         return Targets(vec4<f32>(fit_half(environment.sky_radiance * environment.inverse_light_unit), 1.0));
     }
     let point = load_gbuffer(texel, unjittered_uv(uv), stored_depth);
-    return Targets(vec4<f32>(fit_half(emitted_and_direct_light(point)), 1.0));
+    return Targets(vec4<f32>(fit_half(emitted_and_direct_light(point, vec2<u32>(texel))), 1.0));
 }

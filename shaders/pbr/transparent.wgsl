@@ -19,5 +19,5 @@ fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -
 @fragment
 fn shade(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> Targets {
     let drawn = drawn_surface(fragment, front_facing);
-    return Targets(vec4<f32>(fit_half(emitted_and_direct_light(drawn.point)), saturate(drawn.alpha)));
+    return Targets(vec4<f32>(fit_half(emitted_and_direct_light(drawn.point, vec2<u32>(fragment.clip_position.xy))), saturate(drawn.alpha)));
 }

@@ -70,7 +70,7 @@ pub(super) fn entries(pass: &Pass, shader: &Shader) -> Result<(Option<usize>, Op
         }
     };
     let chosen = match &pass.kind {
-        PassKind::Draw { vertex, fragment, .. } => {
+        PassKind::Draw { vertex, fragment, .. } | PassKind::Procedural { vertex, fragment, .. } => {
             (choose(Stage::Vertex, "vertex", vertex.as_ref(), true), choose(Stage::Fragment, "fragment", fragment.as_ref(), false))
         }
         PassKind::Fullscreen { entry, .. } => (None, choose(Stage::Fragment, "entry", entry.as_ref(), true)),

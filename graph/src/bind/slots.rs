@@ -60,16 +60,16 @@ pub(super) fn take(pass: &Pass, program: Option<&Program>, shaders: &[Shader], p
 fn taker(pass: &Pass, program: &Program, shaders: &[Shader], role: Role, slot: &Slot, problems: &mut Vec<BindError>) -> Option<Taker> {
     let name = slot.name.value.as_str();
     let blends = match &pass.kind {
-        PassKind::Draw { blend, .. } | PassKind::Fullscreen { blend, .. } => blend.as_slice(),
+        PassKind::Draw { blend, .. } | PassKind::Procedural { blend, .. } | PassKind::Fullscreen { blend, .. } => blend.as_slice(),
         _ => &[],
     };
-    if name == "depth" && matches!(pass.kind, PassKind::Draw { .. }) {
+    if name == "depth" && matches!(pass.kind, PassKind::Draw { .. } | PassKind::Procedural { .. }) {
         return Some(Taker::Depth);
     }
     if name == "indirect" && matches!(pass.kind, PassKind::Compute { work: Work::Indirect { .. }, .. }) {
         return Some(Taker::Indirect);
     }
-    let rasterises = matches!(pass.kind, PassKind::Draw { .. } | PassKind::Fullscreen { .. });
+    let rasterises = matches!(pass.kind, PassKind::Draw { .. } | PassKind::Procedural { .. } | PassKind::Fullscreen { .. });
     let outputs = if rasterises { program.main(shaders).map_or(&[][..], |main| main.color_outputs.as_slice()) } else { &[] };
     if role != Role::Read
         && let Some(output) = outputs.iter().find(|output| output.name == name)

@@ -262,6 +262,20 @@ impl<'a> Builder<'a> {
                 };
                 Some((kind, Some(request)))
             }
+            PassKind::Procedural { vertices, instances, cull, .. } => {
+                let vertex = program.vertex(self.shaders)?;
+                let targets = targets::targets(pass, taken, main, self.expanded, self.formats, self.input.device, self.problems)?;
+                work::check_procedural(pass, vertex, *vertices, self.problems);
+                let kind = StepKind::Procedural {
+                    vertex: vertex.name.clone(),
+                    fragment: main.map(|main| main.name.clone()),
+                    vertices: *vertices,
+                    instances: *instances,
+                    cull: *cull,
+                    targets,
+                };
+                Some((kind, None))
+            }
             PassKind::Fullscreen { .. } => {
                 let main = main?;
                 let targets = targets::targets(pass, taken, Some(main), self.expanded, self.formats, self.input.device, self.problems)?;

@@ -68,7 +68,7 @@ pub(super) fn targets(
     problems: &mut Vec<BindError>,
 ) -> Option<Targets> {
     let blends = match &pass.kind {
-        PassKind::Draw { blend, .. } | PassKind::Fullscreen { blend, .. } => blend.as_slice(),
+        PassKind::Draw { blend, .. } | PassKind::Procedural { blend, .. } | PassKind::Fullscreen { blend, .. } => blend.as_slice(),
         _ => &[],
     };
     // A Fullscreen covers every texel, unless the shader discards; what blends sees what was there.
@@ -107,7 +107,9 @@ pub(super) fn targets(
                 }
             }
             Taker::Depth => {
-                let PassKind::Draw { depth: Some(test), .. } = &pass.kind else { continue };
+                let (PassKind::Draw { depth: Some(test), .. } | PassKind::Procedural { depth: Some(test), .. }) = &pass.kind else {
+                    continue;
+                };
                 let Some((view, format)) = builder.attachment(slot, expanded, formats) else { continue };
                 let load = match (slot.role, declared) {
                     (Role::Modify | Role::Read | Role::Recall, _) => Load::Keep,

@@ -37,6 +37,20 @@ pub(super) fn attributes(pass: &Pass, vertex: &EntryPoint, published: &Published
     inputs.into_iter().map(|input| input.name.clone()).collect()
 }
 
+/// A Procedural has no vertices to read, and whole triangles.
+pub(super) fn check_procedural(pass: &Pass, vertex: &EntryPoint, vertices: u32, problems: &mut Vec<BindError>) {
+    for input in &vertex.vertex_inputs {
+        let reason = format!("its vertex shader takes the attribute `{}`, and a Procedural has no vertices to read", input.name);
+        let hint = Some("make it from `@builtin(vertex_index)`, or draw the scene's surfaces with a Draw".to_owned());
+        problems.push(BindError::Target { pass: pass.name.clone(), reason, hint, span: input.span });
+    }
+    if vertices % 3 != 0 {
+        let reason = format!("it has {vertices} vertices, and triangles have three each");
+        let hint = Some("make `vertices` a multiple of 3".to_owned());
+        problems.push(BindError::Work { pass: pass.name.clone(), reason, hint, span: pass.span });
+    }
+}
+
 /// The number of workgroups of a Compute.
 pub(super) fn groups(
     pass: &Pass,

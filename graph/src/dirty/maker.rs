@@ -58,7 +58,7 @@ impl Names {
                 *place = self.of(format!("{:?}", plan.views.get(*place))) as usize;
                 targets(drawn, &view);
             }
-            StepKind::Fullscreen { targets: drawn, .. } => targets(drawn, &view),
+            StepKind::Procedural { targets: drawn, .. } | StepKind::Fullscreen { targets: drawn, .. } => targets(drawn, &view),
             StepKind::Compute { groups: Workgroups::Indirect { buffer, .. }, .. } => resource(buffer),
             StepKind::Compute { .. } => {}
             StepKind::Copy { source, target } | StepKind::Remember { source, target, .. } => {

@@ -126,6 +126,10 @@ fn kind(plan: &Plan, kind: &StepKind) -> Json {
             "name": "Draw", "vertex": vertex, "fragment": fragment, "draw_list": list, "view": view,
             "cull": format!("{cull:?}"), "attributes": attributes, "targets": targets(plan, drawn),
         }),
+        StepKind::Procedural { vertex, fragment, vertices, instances, cull, targets: drawn } => json!({
+            "name": "Procedural", "vertex": vertex, "fragment": fragment, "vertices": vertices, "instances": instances,
+            "cull": format!("{cull:?}"), "targets": targets(plan, drawn),
+        }),
         StepKind::Fullscreen { fragment, targets: drawn } => {
             json!({ "name": "Fullscreen", "fragment": fragment, "targets": targets(plan, drawn) })
         }

@@ -27,7 +27,9 @@ pub(super) fn step(plan: &Plan, place: usize, step: &Step, sources: &SourceMap) 
         lines.push(line);
     }
     match &step.kind {
-        StepKind::Draw { targets: drawn, .. } | StepKind::Fullscreen { targets: drawn, .. } => lines.extend(targets(plan, drawn)),
+        StepKind::Draw { targets: drawn, .. }
+        | StepKind::Procedural { targets: drawn, .. }
+        | StepKind::Fullscreen { targets: drawn, .. } => lines.extend(targets(plan, drawn)),
         StepKind::Clear { target, value } => {
             lines.push(format!("sets      {} to {}", part_name(plan, target), describe::clear(*value)));
         }
@@ -51,8 +53,10 @@ pub(super) fn kind(plan: &Plan, step: &Step) -> String {
             if let Some(view) = plan.views.get(*view) {
                 text += &format!(" from {} at {} x {}", describe::view(view.kind), view.width, view.height);
             }
-            let fragment = fragment.as_ref().map_or_else(|| ", depth alone".to_owned(), |fragment| format!(" and {fragment}"));
-            format!("{text}, entries {vertex}{fragment}")
+            format!("{text}, entries {}", entries(vertex, fragment.as_deref()))
+        }
+        StepKind::Procedural { vertex, fragment, vertices, instances, .. } => {
+            format!("Procedural of {instances} x {vertices} vertices, entries {}", entries(vertex, fragment.as_deref()))
         }
         StepKind::Fullscreen { fragment, targets } => {
             format!("Fullscreen over {} x {}, entry {fragment}", targets.extent[0], targets.extent[1])
@@ -67,6 +71,10 @@ pub(super) fn kind(plan: &Plan, step: &Step) -> String {
         StepKind::Clear { target, .. } => format!("Clear of {}", part_name(plan, target)),
         StepKind::Remember { source, .. } => format!("Remember {} of the frame before", part_name(plan, source)),
     }
+}
+
+fn entries(vertex: &str, fragment: Option<&str>) -> String {
+    fragment.map_or_else(|| format!("{vertex}, depth alone"), |fragment| format!("{vertex} and {fragment}"))
 }
 
 /// The name of a view's part.

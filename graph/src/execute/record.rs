@@ -46,6 +46,7 @@ impl Backend for Recorder {
         let step = &plan.steps[run.step];
         let what = match &step.kind {
             StepKind::Draw { .. } => "draw".to_owned(),
+            StepKind::Procedural { .. } => "procedural".to_owned(),
             StepKind::Fullscreen { .. } => "fullscreen".to_owned(),
             StepKind::Compute { groups: Workgroups::Fixed([x, y, z]), .. } => format!("compute {x}x{y}x{z}"),
             StepKind::Compute { groups: Workgroups::Indirect { buffer, .. }, .. } => format!("compute by {}", name(plan, *buffer)),

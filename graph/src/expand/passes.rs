@@ -247,6 +247,18 @@ impl Unroller<'_, '_> {
                 cull: *cull,
                 blend: blend.clone(),
             },
+            PassKindDecl::Procedural { vertex, fragment, vertices, instances, depth, cull, blend } => PassKind::Procedural {
+                vertex: vertex.clone(),
+                fragment: fragment.clone(),
+                vertices: self.small(vertices, "the vertices of", name)?,
+                instances: match instances {
+                    None => 1,
+                    Some(instances) => self.small(instances, "the instances of", name)?,
+                },
+                depth: *depth,
+                cull: *cull,
+                blend: blend.clone(),
+            },
             PassKindDecl::Fullscreen { entry, blend } => PassKind::Fullscreen { entry: entry.clone(), blend: blend.clone() },
             PassKindDecl::Compute { entry, work } => PassKind::Compute {
                 entry: entry.clone(),

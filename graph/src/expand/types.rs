@@ -322,6 +322,15 @@ pub enum PassKind {
         cull: Cull,
         blend: Vec<(Located<String>, BlendDoc)>,
     },
+    Procedural {
+        vertex: Option<Located<String>>,
+        fragment: Option<Located<String>>,
+        vertices: u32,
+        instances: u32,
+        depth: Option<DepthDoc>,
+        cull: Cull,
+        blend: Vec<(Located<String>, BlendDoc)>,
+    },
     Fullscreen {
         entry: Option<Located<String>>,
         blend: Vec<(Located<String>, BlendDoc)>,
@@ -343,6 +352,7 @@ impl PassKind {
     pub fn name(&self) -> &'static str {
         match self {
             PassKind::Draw { .. } => "Draw",
+            PassKind::Procedural { .. } => "Procedural",
             PassKind::Fullscreen { .. } => "Fullscreen",
             PassKind::Compute { .. } => "Compute",
             PassKind::Copy => "Copy",

@@ -102,6 +102,15 @@ pub enum StepKind {
         attributes: Vec<String>,
         targets: Targets,
     },
+    Procedural {
+        vertex: String,
+        fragment: Option<String>,
+        /// Of an instance.
+        vertices: u32,
+        instances: u32,
+        cull: Cull,
+        targets: Targets,
+    },
     Fullscreen {
         fragment: String,
         targets: Targets,

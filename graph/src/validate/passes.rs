@@ -9,7 +9,7 @@ use crate::expand::types::Located;
 use crate::plan::Cull;
 use crate::published::DrawFilter;
 use crate::source::Span;
-use crate::syntax::document::{BlendDoc, CullDoc, Entries, Expr, IndirectDoc, ObjectsDoc, PassDoc, RunDoc, Text, ViewDoc};
+use crate::syntax::document::{BlendDoc, CullDoc, DepthDoc, Entries, Expr, IndirectDoc, ObjectsDoc, PassDoc, RunDoc, Text, ViewDoc};
 use crate::syntax::spanned::Spanned;
 
 /// Loops inside loops beyond this are refused.
@@ -105,32 +105,7 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                     _ => None,
                 },
             };
-            let written = |slot: &str, entries: &Entries<Text>| entries.keys().any(|key| key.value == slot);
-            let attached = written("depth", write) || written("depth", modify) || written("depth", read);
-            match depth {
-                Some(depth) if !attached => {
-                    let hint = Some("name the depth texture: write: {\"depth\": \"..\"}");
-                    bad(scope, name, "it tests depth, and has no slot `depth`".to_owned(), hint, depth.span);
-                }
-                None if attached => {
-                    let hint = Some("add depth: (test: Less), or whatever the pass needs");
-                    bad(scope, name, "it has a slot `depth`, and says no depth test".to_owned(), hint, name.span);
-                }
-                Some(depth) if depth.value.write && written("depth", read) => {
-                    let hint = Some("add `write: false` to `depth`, or move the slot to `modify`");
-                    bad(scope, name, "it writes depth, and its slot `depth` is under `read`".to_owned(), hint, depth.span);
-                }
-                Some(depth) if !depth.value.write && written("depth", write) => {
-                    let hint = Some("move the slot `depth` to `read`");
-                    bad(scope, name, "it does not write depth, and its slot `depth` is under `write`".to_owned(), hint, depth.span);
-                }
-                _ => {}
-            }
-            if let Some(depth) = depth
-                && !depth.value.slope_bias.is_finite()
-            {
-                bad(scope, name, "its slope bias is not a finite number".to_owned(), None, depth.span);
-            }
+            check_depth(scope, name, depth.as_ref(), [read, write, modify]);
             let kind = view.map(|view| PassKindDecl::Draw {
                 vertex: vertex.as_ref().map(located),
                 fragment: fragment.as_ref().map(located),
@@ -140,6 +115,51 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
                 cull: culling(*cull),
                 blend: blends(scope, name, blend, write, modify),
             });
+            (
+                Common {
+                    when: when.as_ref(),
+                    has: has.as_ref(),
+                    ..Common::of_shader(shader, constants, [read, write, modify], (run, after))
+                },
+                kind,
+            )
+        }
+        PassDoc::Procedural {
+            when,
+            has,
+            shader,
+            vertex,
+            fragment,
+            constants,
+            vertices,
+            instances,
+            depth,
+            cull,
+            blend,
+            read,
+            write,
+            modify,
+            run,
+            after,
+            ..
+        } => {
+            check_depth(scope, name, depth.as_ref(), [read, write, modify]);
+            let instances = match instances {
+                None => Some(None),
+                Some(instances) => scope.expression(instances).map(Some),
+            };
+            let kind = match (scope.expression(vertices), instances) {
+                (Some(vertices), Some(instances)) => Some(PassKindDecl::Procedural {
+                    vertex: vertex.as_ref().map(located),
+                    fragment: fragment.as_ref().map(located),
+                    vertices,
+                    instances,
+                    depth: depth.as_ref().map(|depth| depth.value),
+                    cull: culling(*cull),
+                    blend: blends(scope, name, blend, write, modify),
+                }),
+                _ => None,
+            };
             (
                 Common {
                     when: when.as_ref(),
@@ -369,6 +389,36 @@ fn culling(cull: CullDoc) -> Cull {
         CullDoc::None => Cull::None,
         CullDoc::Front => Cull::Front,
         CullDoc::Back => Cull::Back,
+    }
+}
+
+/// What is tested and written has to be attached, and the other way round.
+fn check_depth(scope: &mut Scope<'_>, name: &Text, depth: Option<&Spanned<DepthDoc>>, [read, write, modify]: [&Entries<Text>; 3]) {
+    let written = |slot: &str, entries: &Entries<Text>| entries.keys().any(|key| key.value == slot);
+    let attached = written("depth", write) || written("depth", modify) || written("depth", read);
+    match depth {
+        Some(depth) if !attached => {
+            let hint = Some("name the depth texture: write: {\"depth\": \"..\"}");
+            bad(scope, name, "it tests depth, and has no slot `depth`".to_owned(), hint, depth.span);
+        }
+        None if attached => {
+            let hint = Some("add depth: (test: Less), or whatever the pass needs");
+            bad(scope, name, "it has a slot `depth`, and says no depth test".to_owned(), hint, name.span);
+        }
+        Some(depth) if depth.value.write && written("depth", read) => {
+            let hint = Some("add `write: false` to `depth`, or move the slot to `modify`");
+            bad(scope, name, "it writes depth, and its slot `depth` is under `read`".to_owned(), hint, depth.span);
+        }
+        Some(depth) if !depth.value.write && written("depth", write) => {
+            let hint = Some("move the slot `depth` to `read`");
+            bad(scope, name, "it does not write depth, and its slot `depth` is under `write`".to_owned(), hint, depth.span);
+        }
+        _ => {}
+    }
+    if let Some(depth) = depth
+        && !depth.value.slope_bias.is_finite()
+    {
+        bad(scope, name, "its slope bias is not a finite number".to_owned(), None, depth.span);
     }
 }
 

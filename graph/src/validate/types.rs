@@ -284,6 +284,15 @@ pub enum PassKindDecl {
         cull: Cull,
         blend: Vec<(Located<String>, BlendDoc)>,
     },
+    Procedural {
+        vertex: Option<Located<String>>,
+        fragment: Option<Located<String>>,
+        vertices: PlacedExpr,
+        instances: Option<PlacedExpr>,
+        depth: Option<DepthDoc>,
+        cull: Cull,
+        blend: Vec<(Located<String>, BlendDoc)>,
+    },
     Fullscreen {
         entry: Option<Located<String>>,
         blend: Vec<(Located<String>, BlendDoc)>,

@@ -212,6 +212,58 @@ pub enum PassDoc {
         #[serde(default)]
         after: Vec<Text>,
     },
+    /// Rasterises triangles that its vertex shader makes from the vertex's and the instance's index.
+    Procedural {
+        /// For people.
+        #[serde(default)]
+        doc: Option<String>,
+        /// Stands only if this is true.
+        #[serde(default)]
+        when: Option<Expr>,
+        /// Stands only if the scene has some of these.
+        #[serde(default)]
+        has: Option<Text>,
+        /// WGSL file.
+        shader: Text,
+        /// Vertex entry point, where the file has several.
+        #[serde(default)]
+        vertex: Option<Text>,
+        /// Fragment entry point, where the file has several. A file without one draws depth alone.
+        #[serde(default)]
+        fragment: Option<Text>,
+        /// Values of `override` constants.
+        #[serde(default)]
+        constants: Entries<Expr>,
+        /// Vertices of an instance, three per triangle.
+        vertices: Expr,
+        /// How many instances; one unless said otherwise.
+        #[serde(default)]
+        instances: Option<Expr>,
+        /// Depth test; needs the slot `depth`.
+        #[serde(default)]
+        depth: Option<Spanned<DepthDoc>>,
+        /// Sides left out; counter-clockwise triangles show their front.
+        #[serde(default)]
+        cull: CullDoc,
+        /// Blending by slot.
+        #[serde(default)]
+        blend: Entries<BlendDoc>,
+        /// Inputs by shader variable.
+        #[serde(default)]
+        read: Entries<Text>,
+        /// Outputs by shader output or variable; `depth` is the depth attachment.
+        #[serde(default)]
+        write: Entries<Text>,
+        /// Outputs that keep what is there.
+        #[serde(default)]
+        modify: Entries<Text>,
+        /// When it runs.
+        #[serde(default)]
+        run: Spanned<RunDoc>,
+        /// Passes that must come first.
+        #[serde(default)]
+        after: Vec<Text>,
+    },
     /// Runs a fragment shader once per texel of its targets.
     Fullscreen {
         /// For people.
@@ -376,6 +428,7 @@ impl PassDoc {
     pub fn slots(&self) -> Vec<(&str, &Text)> {
         match self {
             PassDoc::Draw { read, write, modify, .. }
+            | PassDoc::Procedural { read, write, modify, .. }
             | PassDoc::Fullscreen { read, write, modify, .. }
             | PassDoc::Compute { read, write, modify, .. } => {
                 [write, modify, read].into_iter().flatten().map(|(name, part)| (name.value.as_str(), part)).collect()
