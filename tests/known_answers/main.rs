@@ -11,6 +11,7 @@ mod support;
 mod brdf;
 mod changes;
 mod irradiance;
+mod many_lights;
 mod masks;
 mod materials;
 mod noon;
@@ -30,10 +31,11 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 13] = [
+    let groups: [&[Case]; 14] = [
         brdf::CASES,
         changes::CASES,
         irradiance::CASES,
+        many_lights::CASES,
         masks::CASES,
         materials::CASES,
         noon::CASES,
