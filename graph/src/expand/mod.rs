@@ -73,7 +73,7 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     if has_errors(&problems) {
         Err(problems)
     } else {
-        let offered = validated.outputs.iter().map(|(_, part)| part.resource).collect();
+        let offered = validated.outputs.iter().flat_map(|(_, part)| part.resources()).collect();
         Ok(Expanded { doc: validated.doc.clone(), params, resources, passes, spreads, retained_budget, outputs, offered })
     }
 }

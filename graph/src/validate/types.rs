@@ -138,6 +138,14 @@ pub struct PartExpr {
     pub span: Span,
 }
 
+impl PartExpr {
+    /// What it may stand for, whichever blocks stand.
+    pub fn resources(&self) -> Vec<ResourceId> {
+        let others = self.otherwise.iter().flat_map(|otherwise| otherwise.part.resources());
+        std::iter::once(self.resource).chain(others).collect()
+    }
+}
+
 /// What is named while a block does not stand.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Otherwise {
