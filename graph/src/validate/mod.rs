@@ -96,7 +96,9 @@ fn images(instances: &[Instance<'_>]) -> Vec<ImageDecl> {
 fn check_document(scope: &mut Scope<'_>) {
     let document = scope.document();
     let start = Span::new(scope.instance().loaded.file, 0, 1);
-    let nothing_runs = document.passes.is_empty() && document.blocks.is_empty();
+    // What fills an image is a pass, too.
+    let images = document.resources.values().any(|resource| matches!(resource, ResourceDoc::Image { .. }));
+    let nothing_runs = document.passes.is_empty() && document.blocks.is_empty() && !images;
     for (what, empty) in [("passes", nothing_runs), ("outputs", document.outputs.is_empty())] {
         if empty {
             scope.report(ValidateError::Empty { what, span: start });
