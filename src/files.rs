@@ -1,13 +1,15 @@
 //! Where pipelines, shaders and scenes come from: the disk first, then what is embedded in the program.
 //!
-//! A shader that a pipeline names is looked up in the `shaders` folder beside the pipeline's folder, then beside the pipeline
+//! A shader or image that a pipeline names is looked up in the `shaders` folder beside the pipeline's folder, then beside the pipeline
 //! itself, then in `shaders` of the working directory, then among the embedded ones. A block, or what a pipeline extends, is looked up
 //! beside the pipeline, then in the folder around, then among the embedded pipelines. Paths in pipelines can't leave these folders.
 
+use std::borrow::Cow;
 use std::path::{Component, Path, PathBuf};
 
 use include_dir::{Dir, DirEntry, include_dir};
-use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile};
+use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile, LoadedImage};
+use luminaire_scenes::linear_image::decode_linear;
 
 static PIPELINES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/pipelines");
 static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
@@ -26,8 +28,8 @@ static SCENES: &[(&str, &str)] = &[
     ("wall_removed.ron", include_str!("../scenes/wall_removed.ron")),
 ];
 
-/// Texts larger than this are refused.
-const MAX_TEXT_BYTES: u64 = 64 << 20;
+/// Files larger than this are refused.
+const MAX_FILE_BYTES: u64 = 64 << 20;
 
 /// Files on disk with the embedded ones behind them.
 #[derive(Debug, Clone, Default)]
@@ -65,18 +67,26 @@ impl Files for DiskFiles {
         match kind {
             FileKind::Pipeline => read_disk(Path::new(path)).unwrap_or_else(|| read_embedded(&PIPELINES, "pipelines", path, &["."])),
             FileKind::Block => read_below(&self.block_folders, path, &PIPELINES, "pipelines"),
-            FileKind::Shader => read_below(&self.shader_folders, path, &SHADERS, "shaders"),
+            FileKind::Shader | FileKind::Image => read_below(&self.shader_folders, path, &SHADERS, "shaders"),
         }
+        .and_then(Bytes::into_text)
+    }
+
+    fn image(&self, path: &str) -> Result<LoadedImage, FileError> {
+        let Bytes { name, bytes } = read_below(&self.shader_folders, path, &SHADERS, "shaders")?;
+        let image = decode_linear(&bytes).map_err(FileError::Unreadable)?;
+        Ok(LoadedImage { name, width: image.width, height: image.height, texels: image.texels })
     }
 
     fn known(&self, kind: FileKind) -> Vec<String> {
         match kind {
             FileKind::Pipeline => embedded_pipelines(),
-            FileKind::Block => names(&PIPELINES, "ron"),
-            FileKind::Shader => {
-                let mut known = names(&SHADERS, "wgsl");
+            FileKind::Block => names(&PIPELINES, &["ron"]),
+            FileKind::Shader | FileKind::Image => {
+                let extensions: &[&str] = if kind == FileKind::Shader { &["wgsl"] } else { &["exr", "hdr"] };
+                let mut known = names(&SHADERS, extensions);
                 for folder in &self.shader_folders {
-                    collect(folder, folder, 0, &mut known);
+                    collect(folder, folder, extensions, 0, &mut known);
                 }
                 known.sort();
                 known.dedup();
@@ -88,7 +98,7 @@ impl Files for DiskFiles {
 
 /// The pipelines in the program, without the blocks that they are made of.
 pub fn embedded_pipelines() -> Vec<String> {
-    names(&PIPELINES, "ron").into_iter().filter(|name| !name.starts_with("blocks/")).map(|name| format!("pipelines/{name}")).collect()
+    names(&PIPELINES, &["ron"]).into_iter().filter(|name| !name.starts_with("blocks/")).map(|name| format!("pipelines/{name}")).collect()
 }
 
 /// The scenes in the program.
@@ -104,8 +114,23 @@ pub fn embedded_scene(path: &str) -> Option<LoadedFile> {
     found.map(|(name, text)| LoadedFile { name: format!("scenes/{name}"), text: (*text).to_owned() })
 }
 
+/// What a file holds, under the name that messages show.
+struct Bytes {
+    name: String,
+    bytes: Cow<'static, [u8]>,
+}
+
+impl Bytes {
+    fn into_text(self) -> Result<LoadedFile, FileError> {
+        match String::from_utf8(self.bytes.into_owned()) {
+            Ok(text) => Ok(LoadedFile { name: self.name, text }),
+            Err(error) => Err(FileError::Unreadable(format!("it is not UTF-8 at byte {}", error.utf8_error().valid_up_to()))),
+        }
+    }
+}
+
 /// A file that a pipeline names: in the first of the folders that has it, or in the program.
-fn read_below(folders: &[PathBuf], path: &str, embedded: &Dir<'_>, name: &str) -> Result<LoadedFile, FileError> {
+fn read_below(folders: &[PathBuf], path: &str, embedded: &'static Dir<'static>, name: &str) -> Result<Bytes, FileError> {
     if Path::new(path).components().any(|component| !matches!(component, Component::Normal(_) | Component::CurDir)) {
         return Err(FileError::Unreadable(format!("a path in a pipeline stays inside the {name} folder")));
     }
@@ -116,31 +141,28 @@ fn read_below(folders: &[PathBuf], path: &str, embedded: &Dir<'_>, name: &str) -
 }
 
 /// `None` if there is no such file, so that the next place is tried.
-fn read_disk(path: &Path) -> Option<Result<LoadedFile, FileError>> {
+fn read_disk(path: &Path) -> Option<Result<Bytes, FileError>> {
     let metadata = std::fs::metadata(path).ok()?;
     let unreadable = |reason: String| Some(Err(FileError::Unreadable(reason)));
     if metadata.is_dir() {
         return unreadable("it is a folder".to_owned());
     }
-    if metadata.len() > MAX_TEXT_BYTES {
-        return unreadable(format!("it is larger than {} MiB", MAX_TEXT_BYTES >> 20));
+    if metadata.len() > MAX_FILE_BYTES {
+        return unreadable(format!("it is larger than {} MiB", MAX_FILE_BYTES >> 20));
     }
     match std::fs::read(path) {
         Err(error) => unreadable(error.to_string()),
-        Ok(bytes) => match String::from_utf8(bytes) {
-            Ok(text) => Some(Ok(LoadedFile { name: path.display().to_string(), text })),
-            Err(error) => unreadable(format!("it is not UTF-8 at byte {}", error.utf8_error().valid_up_to())),
-        },
+        Ok(bytes) => Some(Ok(Bytes { name: path.display().to_string(), bytes: bytes.into() })),
     }
 }
 
-fn read_embedded(dir: &Dir<'_>, folder: &str, path: &str, searched: &[&str]) -> Result<LoadedFile, FileError> {
+fn read_embedded(dir: &'static Dir<'static>, folder: &str, path: &str, searched: &[&str]) -> Result<Bytes, FileError> {
     let prefix = format!("{folder}/");
     let inner = path.strip_prefix("./").unwrap_or(path);
     let inner = inner.strip_prefix(&prefix).unwrap_or(inner);
     let file = dir.get_file(inner).or_else(|| dir.get_file(format!("{inner}.ron")));
-    match file.and_then(|file| Some((file.path(), file.contents_utf8()?))) {
-        Some((path, text)) => Ok(LoadedFile { name: format!("{prefix}{}", path.display()), text: text.to_owned() }),
+    match file {
+        Some(file) => Ok(Bytes { name: format!("{prefix}{}", file.path().display()), bytes: file.contents().into() }),
         None => {
             let searched = searched.iter().map(|place| (*place).to_owned()).chain(["the files in the program".to_owned()]).collect();
             Err(FileError::NotFound { searched })
@@ -148,12 +170,12 @@ fn read_embedded(dir: &Dir<'_>, folder: &str, path: &str, searched: &[&str]) -> 
     }
 }
 
-fn names(dir: &Dir<'_>, extension: &str) -> Vec<String> {
+fn names(dir: &Dir<'_>, extensions: &[&str]) -> Vec<String> {
     let mut found = Vec::new();
     for entry in dir.entries() {
         match entry {
-            DirEntry::Dir(dir) => found.extend(names(dir, extension)),
-            DirEntry::File(file) if file.path().extension().is_some_and(|found| found == extension) => {
+            DirEntry::Dir(dir) => found.extend(names(dir, extensions)),
+            DirEntry::File(file) if has_extension(file.path(), extensions) => {
                 found.push(file.path().display().to_string());
             }
             DirEntry::File(_) => {}
@@ -163,14 +185,18 @@ fn names(dir: &Dir<'_>, extension: &str) -> Vec<String> {
     found
 }
 
-/// Shader files below a folder, for hints.
-fn collect(root: &Path, folder: &Path, depth: usize, found: &mut Vec<String>) {
+fn has_extension(path: &Path, extensions: &[&str]) -> bool {
+    path.extension().is_some_and(|found| extensions.iter().any(|extension| found == *extension))
+}
+
+/// Files of some kinds below a folder, for hints.
+fn collect(root: &Path, folder: &Path, extensions: &[&str], depth: usize, found: &mut Vec<String>) {
     let Ok(entries) = std::fs::read_dir(folder) else { return };
     for entry in entries.flatten().take(1000) {
         let path = entry.path();
         if path.is_dir() && depth < 4 {
-            collect(root, &path, depth + 1, found);
-        } else if path.extension().is_some_and(|extension| extension == "wgsl")
+            collect(root, &path, extensions, depth + 1, found);
+        } else if has_extension(&path, extensions)
             && let Ok(inner) = path.strip_prefix(root)
         {
             found.push(inner.display().to_string());

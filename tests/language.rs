@@ -10,7 +10,7 @@ use luminaire::graph::device::DeviceFacts;
 use luminaire::graph::diagnostic::{Diagnostic, render};
 use luminaire::graph::expand::BLOCK_ALONE;
 use luminaire::graph::format::FORMATS;
-use luminaire::graph::source::{FileError, FileKind, Files, LoadedFile, MemoryFiles, SourceMap};
+use luminaire::graph::source::{FileError, FileKind, Files, LoadedFile, LoadedImage, MemoryFiles, SourceMap};
 use luminaire::graph::syntax::document::{Entries, ParamDoc, PassDoc, ResourceDoc};
 use luminaire::graph::syntax::read_document;
 
@@ -29,6 +29,10 @@ struct PageFiles(MemoryFiles);
 impl Files for PageFiles {
     fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError> {
         self.0.read(kind, path).or_else(|_| DiskFiles::default().read(kind, path))
+    }
+
+    fn image(&self, path: &str) -> Result<LoadedImage, FileError> {
+        DiskFiles::default().image(path)
     }
 
     fn known(&self, kind: FileKind) -> Vec<String> {

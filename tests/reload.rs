@@ -129,6 +129,39 @@ fn a_failed_reload_keeps_the_last_good_plan() {
 }
 
 #[test]
+fn an_image_is_filled_once_and_again_when_its_file_changes() {
+    let (files, adapter) = (Files::new(), Adapter::noop(&DeviceFacts::webgpu_defaults()).unwrap());
+    let path = files.path("it.ron");
+    let resources = r#"resources: {"ramp": Image(file: "ramp.exr", format: "rgba16float"),"#;
+    let text = edited(PIPELINE, "resources: {\n        \"light\"", &format!("{resources}\n        \"light\""));
+    files.write("it.ron", &edited(&text, "read: {\"light\": \"light\"}", "read: {\"light\": \"ramp\"}"));
+    let save = |value: f32| image::Rgb32FImage::from_pixel(8, 8, image::Rgb([value; 3])).save(files.path("ramp.exr")).unwrap();
+    save(1.0);
+    let mut world = load_scene("scenes/cornell.ron", None).unwrap().world;
+    let mut session = Session::on(&adapter, &mut world, &request(&path)).unwrap();
+    session.render_frame().unwrap();
+    assert_eq!(session.ran(), ["image(ramp)", "sum", "last.copy"]);
+    // The same texels are no change; others are.
+    for (value, ran) in [(1.0, vec![]), (2.0, vec!["image(ramp)", "sum", "last.copy"])] {
+        save(value);
+        session.reload(&mut world, &request(&path)).unwrap();
+        session.render_frame().unwrap();
+        assert_eq!(session.ran(), ran, "{value}");
+        assert!(session.render_frame().unwrap().settled);
+    }
+    // One that can't be read leaves the last good plan.
+    for (bytes, code) in [(&b"no image"[..], "load::bad-image"), (&b"\x76\x2f\x31\x01"[..], "load::bad-image")] {
+        std::fs::write(files.path("ramp.exr"), bytes).unwrap();
+        let (problems, _) = session.reload(&mut world, &request(&path)).unwrap_err();
+        assert_eq!(problems.iter().map(|problem| problem.code).collect::<Vec<_>>(), [code]);
+        assert!(session.render_frame().unwrap().settled);
+    }
+    std::fs::remove_file(files.path("ramp.exr")).unwrap();
+    let (problems, _) = session.reload(&mut world, &request(&path)).unwrap_err();
+    assert_eq!(problems[0].code, "load::missing-image");
+}
+
+#[test]
 fn a_plan_that_needs_another_feature_gets_another_device() {
     let facts = DeviceFacts { features: [Feature::Float32Blendable].into_iter().collect(), ..DeviceFacts::webgpu_defaults() };
     let (files, adapter) = (Files::new(), Adapter::noop(&facts).unwrap());

@@ -66,13 +66,14 @@ fn a_compilation_names_all_its_files() {
     use luminaire::scenes::publish::schema;
 
     let folder = tempfile::tempdir().unwrap();
-    let [pipeline, shader, import] = ["p.ron", "s.wgsl", "i.wgsl"].map(|name| folder.path().join(name));
+    let [pipeline, shader, import, ramp] = ["p.ron", "s.wgsl", "i.wgsl", "r.exr"].map(|name| folder.path().join(name));
     write(
         &pipeline,
-        r#"(doc: "One pass.", resources: {"a": Texture(format: "rgba8unorm")},
+        r#"(doc: "One pass.", resources: {"a": Texture(format: "rgba8unorm"), "ramp": Image(file: "r.exr", format: "r32float")},
             passes: {"p": Fullscreen(shader: "s.wgsl", write: {"color": "a"})}, outputs: {"color": "a"})"#,
     );
     write(&shader, "#import \"i.wgsl\"\nstruct Out { color: vec4<f32> }\n@fragment fn shade() -> Out { return Out(vec4<f32>(value())); }");
+    image::Rgb32FImage::new(2, 2).save(&ramp).unwrap();
     write(&import, "fn value() -> f32 { return 1.0; }");
     let compilation = compile(&CompileInput {
         pipeline: &pipeline.display().to_string(),
@@ -86,7 +87,7 @@ fn a_compilation_names_all_its_files() {
     });
     assert!(compilation.plan.is_some(), "{:?}", compilation.diagnostics);
     let mut watch = Watch::sources(&compilation.sources).unwrap();
-    for file in [&pipeline, &shader, &import] {
+    for file in [&pipeline, &shader, &import, &ramp] {
         write(file, "changed");
         let changed = told(&mut watch, SOON);
         assert_eq!(changed.len(), 1, "{changed:?}");

@@ -1,7 +1,8 @@
 //! Source files and places in them.
 //!
 //! Every text that a compilation reads (pipelines, shaders, scene files) is added to one [`SourceMap`] and from then on
-//! named by a [`FileId`]; a [`Span`] is a byte range in it. Files are never removed, so a span stays valid as long as the map.
+//! named by a [`FileId`]; a [`Span`] is a byte range in it. Images are added
+//! without text, so that a list of all files is complete. Files are never removed, so a span stays valid as long as the map.
 
 use std::sync::Arc;
 
@@ -86,6 +87,12 @@ pub trait Files {
     /// Reads a text file.
     fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError>;
 
+    /// Reads an image. Whoever has no images finds none.
+    fn image(&self, path: &str) -> Result<LoadedImage, FileError> {
+        let _ = path;
+        Err(FileError::NotFound { searched: Vec::new() })
+    }
+
     /// The paths of a kind that could have been meant, for hints. May be empty.
     fn known(&self, kind: FileKind) -> Vec<String> {
         let _ = kind;
@@ -102,6 +109,8 @@ pub enum FileKind {
     Block,
     /// A `.wgsl` shader.
     Shader,
+    /// An image, by [`Files::image`]. Relative to the folder of shaders.
+    Image,
 }
 
 /// A text and the name under which messages show it.
@@ -111,6 +120,25 @@ pub struct LoadedFile {
     pub name: String,
     /// Its content.
     pub text: String,
+}
+
+/// The texels of an image, and the name under which messages show it.
+#[derive(Clone, PartialEq)]
+pub struct LoadedImage {
+    /// For example the path on disk.
+    pub name: String,
+    /// Columns.
+    pub width: u32,
+    /// Rows.
+    pub height: u32,
+    /// `width * height`, row by row from the top: red, green, blue, alpha as they stand in the file.
+    pub texels: Vec<[f32; 4]>,
+}
+
+impl std::fmt::Debug for LoadedImage {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "{} ({} x {})", self.name, self.width, self.height)
+    }
 }
 
 /// Why a file could not be read. The message is shown after the path.
@@ -131,12 +159,19 @@ pub enum FileError {
 #[derive(Debug, Clone, Default)]
 pub struct MemoryFiles {
     files: std::collections::BTreeMap<(FileKind, String), String>,
+    images: std::collections::BTreeMap<String, LoadedImage>,
 }
 
 impl MemoryFiles {
     /// Adds or replaces a file.
     pub fn with(mut self, kind: FileKind, path: &str, text: &str) -> MemoryFiles {
         self.files.insert((kind, path.to_owned()), text.to_owned());
+        self
+    }
+
+    /// Adds or replaces an image, under its name.
+    pub fn with_image(mut self, image: LoadedImage) -> MemoryFiles {
+        self.images.insert(image.name.clone(), image);
         self
     }
 }
@@ -150,7 +185,14 @@ impl Files for MemoryFiles {
         }
     }
 
+    fn image(&self, path: &str) -> Result<LoadedImage, FileError> {
+        self.images.get(path).cloned().ok_or_else(|| FileError::NotFound { searched: vec!["memory".to_owned()] })
+    }
+
     fn known(&self, kind: FileKind) -> Vec<String> {
+        if kind == FileKind::Image {
+            return self.images.keys().cloned().collect();
+        }
         self.files.keys().filter(|key| key.0 == kind).map(|key| key.1.clone()).collect()
     }
 }

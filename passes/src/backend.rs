@@ -17,6 +17,7 @@ use crate::copy::CopyStep;
 use crate::draw::DrawStep;
 use crate::errors::{Subject, catch};
 use crate::fullscreen::FullscreenStep;
+use crate::image::ImageStep;
 use crate::poison;
 use crate::procedural::ProceduralStep;
 use crate::remember::{Carried, RememberStep};
@@ -33,6 +34,7 @@ enum Prepared {
     Compute(ComputeStep),
     Copy(CopyStep),
     Clear(ClearStep),
+    Image(ImageStep),
     Remember(RememberStep),
 }
 
@@ -200,7 +202,7 @@ impl Backend for WgpuBackend {
                 Prepared::Procedural(step) => Some(step.groups()),
                 Prepared::Fullscreen(step) => Some(step.groups()),
                 Prepared::Compute(step) => Some(step.groups()),
-                Prepared::Copy(_) | Prepared::Clear(_) | Prepared::Remember(_) => None,
+                Prepared::Copy(_) | Prepared::Clear(_) | Prepared::Image(_) | Prepared::Remember(_) => None,
             };
             if let Some(groups) = groups {
                 groups.update(&store.gpu.queue, run);
@@ -267,6 +269,7 @@ fn prepare_step(store: &mut Store, plan: &Plan, step: &Step, subject: &Subject) 
         StepKind::Compute { entry, groups } => Prepared::Compute(ComputeStep::prepare(store, plan, step, entry, *groups)?),
         StepKind::Copy { source, target } => Prepared::Copy(CopyStep::prepare(store, plan, step, source, target)?),
         StepKind::Clear { target, value } => Prepared::Clear(ClearStep::prepare(store, plan, subject, target, *value)?),
+        StepKind::Image { target, image } => Prepared::Image(ImageStep::prepare(store, plan, subject, target, image)?),
         StepKind::Remember { source, target, .. } => Prepared::Remember(RememberStep::prepare(store, plan, step, source, target)?),
     })
 }
@@ -286,6 +289,7 @@ fn encode(
         Prepared::Compute(step) => step.encode(encoder, iterations, stamps, counts),
         Prepared::Copy(step) => step.encode(encoder),
         Prepared::Clear(step) => step.encode(encoder),
+        Prepared::Image(step) => step.encode(encoder),
         Prepared::Remember(step) => step.encode(encoder),
     }
 }

@@ -142,7 +142,7 @@ impl Executor {
         }
         let mut problems = Vec::new();
         for (index, step) in self.plan.steps.iter().enumerate() {
-            let binds = !matches!(step.kind, StepKind::Copy { .. } | StepKind::Clear { .. });
+            let binds = !matches!(step.kind, StepKind::Copy { .. } | StepKind::Clear { .. } | StepKind::Image { .. });
             let done = match changed {
                 Changed { bound: true, .. } if binds => self.backend.prepare_step(&self.plan, index),
                 Changed { draws: true, .. } => self.backend.refresh_draw(&self.plan, index),

@@ -18,6 +18,7 @@ mod errors;
 pub mod executor;
 pub mod facts;
 mod fullscreen;
+mod image;
 mod kept;
 mod layouts;
 mod pipelines;

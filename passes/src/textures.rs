@@ -165,7 +165,12 @@ fn is_cleared(plan: &Plan, memory: &Memory) -> bool {
 }
 
 fn is_copied_to(plan: &Plan, memory: &Memory) -> bool {
-    plan.steps.iter().any(|step| matches!(&step.kind, StepKind::Copy { target, .. } | StepKind::Remember { target, .. } if memory.holders.contains(&target.resource)))
+    plan.steps.iter().any(|step| match &step.kind {
+        StepKind::Copy { target, .. } | StepKind::Image { target, .. } | StepKind::Remember { target, .. } => {
+            memory.holders.contains(&target.resource)
+        }
+        _ => false,
+    })
 }
 
 fn is_output(plan: &Plan, memory: &Memory) -> bool {

@@ -6,6 +6,7 @@
 pub mod asset;
 pub mod describe;
 pub mod gltf;
+pub mod linear_image;
 pub mod primitive;
 pub mod publish;
 pub mod scene_file;

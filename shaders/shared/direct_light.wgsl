@@ -1,8 +1,9 @@
 // Light that reaches a surface straight from the scene's lights, shadows included, and leaves it towards the eye.
 //
 // The first directional light has a shadow map, and so have the first point and spot lights, as many as `local_shadow` has cubes;
-// the others give light without shadow. The sky gives none: it is no punctual light.
+// the others, rectangles among them, give light without shadow. The sky gives none: it is no punctual light.
 
+#import "area/rectangle_light.wgsl"
 #import "shared/brdf.wgsl"
 #import "shared/light_lists.wgsl"
 #import "shared/lights.wgsl"
@@ -60,7 +61,7 @@ fn direct_light(point: SurfacePoint, texel: vec2<u32>) -> vec3<f32> {
         }
         sum += light;
     }
-    return sum + all_local_light(point, texel);
+    return sum + all_local_light(point, texel) + all_rectangle_light(point);
 }
 
 // The same with what the point emits itself; that alone where it is unlit.

@@ -11,6 +11,8 @@ struct Environment {
     directional_count: u32,
     // Entries in use of `local_lights`.
     local_count: u32,
+    // Entries in use of `rectangle_lights`.
+    rectangle_count: u32,
 }
 
 var<uniform> environment: Environment;

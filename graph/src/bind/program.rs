@@ -75,7 +75,7 @@ pub(super) fn entries(pass: &Pass, shader: &Shader) -> Result<(Option<usize>, Op
         }
         PassKind::Fullscreen { entry, .. } => (None, choose(Stage::Fragment, "entry", entry.as_ref(), true)),
         PassKind::Compute { entry, .. } => (None, choose(Stage::Compute, "entry", entry.as_ref(), true)),
-        PassKind::Copy | PassKind::Clear { .. } | PassKind::Remember => (None, None),
+        PassKind::Copy | PassKind::Clear { .. } | PassKind::Image(_) | PassKind::Remember => (None, None),
     };
     if problems.is_empty() { Ok(chosen) } else { Err(problems) }
 }

@@ -287,7 +287,7 @@ impl<'a> Builder<'a> {
                     work::groups(pass, work, &self.shaders[program.shader], main, self.expanded, self.input.device, self.problems)?;
                 Some((StepKind::Compute { entry: main.name.clone(), groups }, None))
             }
-            PassKind::Copy | PassKind::Clear { .. } | PassKind::Remember => None,
+            PassKind::Copy | PassKind::Clear { .. } | PassKind::Image(_) | PassKind::Remember => None,
         }
     }
 
@@ -304,6 +304,7 @@ impl<'a> Builder<'a> {
                 work::check_clear(pass, target, value, self.formats, self.problems);
                 Some(StepKind::Clear { target: view(target), value })
             }
+            (PassKind::Image(image), [target]) => Some(StepKind::Image { target: view(target), image: image.clone() }),
             _ => None,
         }
     }

@@ -65,7 +65,7 @@ impl Names {
                 view(source);
                 view(target);
             }
-            StepKind::Clear { target, .. } => view(target),
+            StepKind::Clear { target, .. } | StepKind::Image { target, .. } => view(target),
         }
         for binding in &mut step.bindings {
             match &mut binding.target {

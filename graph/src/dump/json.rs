@@ -139,6 +139,7 @@ fn kind(plan: &Plan, kind: &StepKind) -> Json {
         }),
         StepKind::Copy { source, target } => json!({ "name": "Copy", "source": part(plan, source), "target": part(plan, target) }),
         StepKind::Clear { target, value } => json!({ "name": "Clear", "target": part(plan, target), "value": clear(*value) }),
+        StepKind::Image { target, image } => json!({ "name": "Image", "target": part(plan, target), "file": image.name }),
         StepKind::Remember { source, target, first, on_resize } => json!({
             "name": "Remember", "source": part(plan, source), "target": part(plan, target), "first": clear(*first),
             "on_resize": format!("{on_resize:?}"),

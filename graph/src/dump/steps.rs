@@ -33,7 +33,7 @@ pub(super) fn step(plan: &Plan, place: usize, step: &Step, sources: &SourceMap) 
         StepKind::Clear { target, value } => {
             lines.push(format!("sets      {} to {}", part_name(plan, target), describe::clear(*value)));
         }
-        StepKind::Compute { .. } | StepKind::Copy { .. } | StepKind::Remember { .. } => {}
+        StepKind::Compute { .. } | StepKind::Copy { .. } | StepKind::Image { .. } | StepKind::Remember { .. } => {}
     }
     if !step.constants.is_empty() {
         let constants: Vec<String> = step.constants.iter().map(|(name, value)| format!("{name} = {value}")).collect();
@@ -69,6 +69,7 @@ pub(super) fn kind(plan: &Plan, step: &Step) -> String {
         }
         StepKind::Copy { source, target } => format!("Copy of {} to {}", part_name(plan, source), part_name(plan, target)),
         StepKind::Clear { target, .. } => format!("Clear of {}", part_name(plan, target)),
+        StepKind::Image { image, .. } => format!("Image of {} x {} from {}", image.width, image.height, image.name),
         StepKind::Remember { source, .. } => format!("Remember {} of the frame before", part_name(plan, source)),
     }
 }

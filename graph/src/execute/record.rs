@@ -52,6 +52,7 @@ impl Backend for Recorder {
             StepKind::Compute { groups: Workgroups::Indirect { buffer, .. }, .. } => format!("compute by {}", name(plan, *buffer)),
             StepKind::Remember { source, target, .. } => format!("remember {} in {}", part(plan, source), part(plan, target)),
             StepKind::Copy { source, target } => format!("copy {} to {}", part(plan, source), part(plan, target)),
+            StepKind::Image { target, image } => format!("image {} in {}", image.name, part(plan, target)),
             StepKind::Clear { target, value } => format!("clear {} to {}", part(plan, target), value_text(value)),
         };
         let iterations = if run.iterations.is_empty() { String::new() } else { format!(" {:?}", run.iterations) };

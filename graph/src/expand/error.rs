@@ -36,6 +36,8 @@ pub enum ExpandError {
     SizeOverLimit { name: String, what: &'static str, value: u64, limit: u64, device: String, span: Span },
     #[error("resource `{name}`: {reason}")]
     BadResource { name: String, reason: String, hint: &'static str, span: Span },
+    #[error("pass `{pass}` writes `{image}`, which holds what a file says")]
+    WritesImage { image: String, pass: Arc<str>, span: Span, declared: Span },
     #[error("pass `{pass}`: `{resource}` has no {what} {index}: it has {count}")]
     PartOutOfRange { pass: String, resource: String, what: &'static str, index: i64, count: u32, span: Span },
     #[error("pass `{pass}`: `{resource}` is a buffer and has no {what}")]
@@ -97,6 +99,10 @@ impl From<ExpandError> for Diagnostic {
                 .at(span, "computed here")
                 .hint("choose a smaller size, or render a smaller image"),
             ExpandError::BadResource { hint, span, .. } => Diagnostic::error("expand::bad-resource", message).at(span, "here").hint(hint),
+            ExpandError::WritesImage { span, declared, .. } => Diagnostic::error("expand::writes-image", message)
+                .at(span, "written here")
+                .and(declared, "the file")
+                .hint("copy it to a `Texture` of the same size and format, and change that one"),
             ExpandError::PartOutOfRange { span, .. } => {
                 Diagnostic::error("expand::part-out-of-range", message).at(span, "this part").hint("indices start at 0")
             }

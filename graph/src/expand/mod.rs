@@ -7,6 +7,7 @@ mod environment;
 mod error;
 mod extents;
 mod histories;
+mod images;
 mod loops;
 mod modifiers;
 mod params;
@@ -57,6 +58,8 @@ pub fn expand(validated: &Validated, input: &ExpandInput<'_>) -> Result<Expanded
     histories::resources(&validated.histories, &validated.resources, &mut resources);
     let asked = |name: &str| input.outputs.is_none_or(|asked| asked.iter().any(|other| other == name));
     let Unrolled { mut passes, spreads, mut outputs } = passes::passes(&mut environment, validated, &resources, asked);
+    images::check(&mut environment, &validated.images, &resources, &passes);
+    images::passes(&validated.images, &resources[..validated.resources.len()], &mut passes);
     histories::passes(&validated.histories, &resources, &mut passes);
     for asked in input.outputs.into_iter().flatten() {
         if !validated.outputs.iter().any(|(name, _)| name.value == *asked) {

@@ -7,7 +7,7 @@ use smallvec::SmallVec;
 use crate::format::Format;
 use crate::plan::Cull;
 use crate::published::{DrawFilter, ViewKind};
-use crate::source::Span;
+use crate::source::{LoadedImage, Span};
 use crate::syntax::document::{BlendDoc, DepthDoc};
 
 /// A resource of [`Expanded::resources`].
@@ -343,6 +343,8 @@ pub enum PassKind {
     Clear {
         value: Option<ClearValue>,
     },
+    /// Holds what a file says. Generated; its one write is the image.
+    Image(Arc<LoadedImage>),
     /// Brings the past of a resource up to the frame before. Generated; its one write is the history.
     Remember,
 }
@@ -357,6 +359,7 @@ impl PassKind {
             PassKind::Compute { .. } => "Compute",
             PassKind::Copy => "Copy",
             PassKind::Clear { .. } => "Clear",
+            PassKind::Image(_) => "Image",
             PassKind::Remember => "Remember",
         }
     }

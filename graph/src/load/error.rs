@@ -9,6 +9,8 @@ use crate::source::{FileError, Span};
 pub enum LoadError {
     #[error("can't read the pipeline `{path}`: {error}")]
     Unreadable { path: String, error: FileError, known: Vec<String>, span: Span },
+    #[error("can't read the image `{path}`: {error}")]
+    BadImage { path: String, error: FileError, known: Vec<String>, span: Span },
     #[error("a pipeline can't be a part of itself: {}", chain.join(" -> "))]
     Recursion { chain: Vec<String>, span: Span },
     #[error("`{path}` stands {limit} files deep")]
@@ -32,6 +34,15 @@ impl From<LoadError> for Diagnostic {
                 let hint =
                     hint.or_else(|| (!known.is_empty()).then(|| format!("there are {}", list_names(known.iter().map(String::as_str)))));
                 Diagnostic::error("load::missing-file", message).at(span, "named here").maybe_hint(hint)
+            }
+            LoadError::BadImage { path, error, known, span } => {
+                if matches!(error, FileError::Unreadable(_)) {
+                    let hint = "save it again, as an OpenEXR or Radiance HDR file";
+                    return Diagnostic::error("load::bad-image", message).at(span, "named here").hint(hint);
+                }
+                let hint = did_you_mean(&path, known.iter().map(String::as_str));
+                let hint = hint.unwrap_or_else(|| "images are .exr and .hdr files in the folder of shaders".to_owned());
+                Diagnostic::error("load::missing-image", message).at(span, "named here").hint(hint)
             }
             LoadError::Recursion { span, .. } => Diagnostic::error("load::recursion", message)
                 .at(span, "this closes the circle")

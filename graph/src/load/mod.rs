@@ -1,4 +1,4 @@
-//! A pipeline's path to its document, with every file that it names: blocks, and what it extends.
+//! A pipeline's path to its document, with every file that it names: blocks, images, and what it extends.
 //!
 //! Guarantees: no file contains itself, what a pipeline extends is worked in, and each block stands beside the document that names
 //! it. The authors' documents are left as they are: what comes out is a new one, whose entries keep their places. Accepted downside:
@@ -11,12 +11,13 @@ pub use error::LoadError;
 
 use std::collections::BTreeMap;
 use std::rc::Rc;
+use std::sync::Arc;
 
 use indexmap::IndexMap;
 
 use crate::diagnostic::{Diagnostic, has_errors};
-use crate::source::{FileId, FileKind, Files, SourceMap, Span};
-use crate::syntax::document::{BlockDoc, Document, Entries};
+use crate::source::{FileError, FileId, FileKind, Files, LoadedImage, SourceMap, Span};
+use crate::syntax::document::{BlockDoc, Document, Entries, ResourceDoc, Text};
 use crate::syntax::read_document;
 
 /// Files that name each other deeper than this are refused.
@@ -48,8 +49,8 @@ impl Loaded {
 /// # Errors
 /// Files that can't be read or are no documents, files that contain themselves, and changes to a pipeline that don't fit it.
 pub fn load(files: &dyn Files, pipeline: &str, sources: &mut SourceMap) -> Result<Loaded, Vec<Diagnostic>> {
-    let (read, chain, problems) = Default::default();
-    let mut loader = Loader { files, sources, read, chain, blocks: 0, problems };
+    let (read, images, chain, problems) = Default::default();
+    let mut loader = Loader { files, sources, read, images, chain, blocks: 0, problems };
     let loaded = loader.file(FileKind::Pipeline, pipeline, Span::NOWHERE);
     match loaded {
         Some(loaded) if !has_errors(&loader.problems) => Ok(loaded),
@@ -62,6 +63,8 @@ struct Loader<'a> {
     sources: &'a mut SourceMap,
     /// Documents by the names of their files; `None` where one is wrong, which is reported once.
     read: BTreeMap<String, Option<(FileId, Rc<Document>)>>,
+    /// Images by their paths, or why they can't be read.
+    images: BTreeMap<String, Result<Arc<LoadedImage>, FileError>>,
     /// The files around, outermost first.
     chain: Vec<String>,
     blocks: usize,
@@ -106,11 +109,41 @@ impl Loader<'_> {
     }
 
     fn document(&mut self, file: FileId, document: &Document) -> Option<Loaded> {
+        let mut document = document.clone();
+        self.images(&mut document.resources);
         let mut blocks = self.blocks(&document.blocks);
-        let Some(changes) = &document.extend else { return Some(Loaded::new(document.clone(), file, blocks)) };
+        let Some(mut changes) = document.extend.take() else { return Some(Loaded::new(document, file, blocks)) };
+        self.images(&mut changes.replace.resources);
         blocks.extend(self.blocks(&changes.replace.blocks));
         let base = self.file(FileKind::Block, &changes.file.value, changes.file.span)?;
-        Some(extend::extend(base, Loaded::new(document.clone(), file, blocks), changes, &mut self.problems))
+        Some(extend::extend(base, Loaded::new(document, file, blocks), &changes, &mut self.problems))
+    }
+
+    /// Reads the images that resources name.
+    fn images(&mut self, resources: &mut Entries<ResourceDoc>) {
+        for resource in resources.values_mut() {
+            if let ResourceDoc::Image { file, loaded, .. } = resource {
+                *loaded = self.image(file);
+            }
+        }
+    }
+
+    fn image(&mut self, path: &Text) -> Option<Arc<LoadedImage>> {
+        if !self.images.contains_key(&path.value) {
+            let read = self.files.image(&path.value).map(Arc::new);
+            if let Ok(image) = &read {
+                self.sources.add(image.name.as_str(), "");
+            }
+            self.images.insert(path.value.clone(), read);
+        }
+        match self.images.get(&path.value)? {
+            Ok(image) => Some(Arc::clone(image)),
+            Err(error) => {
+                let (error, known) = (error.clone(), self.files.known(FileKind::Image));
+                self.report(LoadError::BadImage { path: path.value.clone(), error, known, span: path.span });
+                None
+            }
+        }
     }
 
     fn blocks(&mut self, blocks: &Entries<BlockDoc>) -> IndexMap<String, Loaded> {

@@ -9,7 +9,7 @@ use crate::expand::types::{ClearValue, OnResize, PassId, ResourceId, Run};
 use crate::format::Format;
 use crate::published::{DrawFilter, RowReads, ViewKind, ViewRequest};
 use crate::reflect::interface::{StorageAccess, ViewDimension};
-use crate::source::Span;
+use crate::source::{LoadedImage, Span};
 use crate::syntax::document::{BlendDoc, CompareDoc};
 
 /// One thing to run.
@@ -127,6 +127,11 @@ pub enum StepKind {
     Clear {
         target: PartView,
         value: ClearValue,
+    },
+    /// Fills a texture with what a file says.
+    Image {
+        target: PartView,
+        image: Arc<LoadedImage>,
     },
     /// Copies what a resource held at the end of the frame before.
     Remember {

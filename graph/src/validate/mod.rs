@@ -19,13 +19,17 @@ pub use error::ValidateError;
 pub(crate) use references::without_indices;
 pub(crate) use resources::clear_fits;
 
+use std::sync::Arc;
+
 use crate::diagnostic::{Diagnostic, has_errors};
-use crate::expand::types::Located;
+use crate::expand::types::{Located, ResourceId};
 use crate::load::Loaded;
 use crate::published::PublishedSchema;
 use crate::source::Span;
+use crate::syntax::document::ResourceDoc;
+use instances::Instance;
 use scope::Scope;
-use types::Validated;
+use types::{ImageDecl, Validated};
 
 /// Resolves every name of a pipeline and its blocks.
 ///
@@ -71,14 +75,30 @@ pub fn validate(loaded: &Loaded, published: &PublishedSchema) -> Result<Validate
     }
     let inputs = document.inputs.keys().map(passes::located).collect();
     let blocks = blocks.into_iter().flatten().collect();
-    Ok(Validated { doc: document.doc.clone(), params, resources, blocks, inputs, items, outputs, histories, measured, retained_budget })
+    let (doc, images) = (document.doc.clone(), images(&instances));
+    Ok(Validated { doc, params, resources, blocks, inputs, items, outputs, histories, images, measured, retained_budget })
+}
+
+/// The resources of all files that are images.
+fn images(instances: &[Instance<'_>]) -> Vec<ImageDecl> {
+    let mut found = Vec::new();
+    for instance in instances {
+        for (id, resource) in (instance.first_resource..).zip(instance.document().resources.values()) {
+            if let ResourceDoc::Image { file, loaded: Some(image), .. } = resource {
+                found.push(ImageDecl { resource: ResourceId(id), image: Arc::clone(image), span: file.span });
+            }
+        }
+    }
+    found
 }
 
 /// What holds for a file as a whole.
 fn check_document(scope: &mut Scope<'_>) {
     let document = scope.document();
     let start = Span::new(scope.instance().loaded.file, 0, 1);
-    let nothing_runs = document.passes.is_empty() && document.blocks.is_empty();
+    // What fills an image is a pass, too.
+    let images = document.resources.values().any(|resource| matches!(resource, ResourceDoc::Image { .. }));
+    let nothing_runs = document.passes.is_empty() && document.blocks.is_empty() && !images;
     for (what, empty) in [("passes", nothing_runs), ("outputs", document.outputs.is_empty())] {
         if empty {
             scope.report(ValidateError::Empty { what, span: start });

@@ -2,8 +2,9 @@
 
 use super::error::ValidateError;
 use super::scope::Scope;
-use super::types::{Mips, ResourceDecl, ResourceKind, Size};
-use crate::expand::types::{ClearValue, Dimension, Keep, Located, OnResize};
+use super::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
+use crate::expand::types::{ClearValue, Dimension, Keep, Located, OnResize, Value};
+use crate::expression::Expression;
 use crate::format::{FORMATS, Format, SampleKind};
 use crate::source::Span;
 use crate::syntax::document::{ClearDoc, DimensionDoc, FormatDoc, HistoryDoc, KeepDoc, MipsDoc, OnResizeDoc, ResourceDoc, SizeDoc, Text};
@@ -30,6 +31,28 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
                 report(scope, name, "a buffer can only begin as `Zero`".to_owned(), history.as_ref().map_or(name.span, |doc| doc.span));
             }
             Some(with_past(located, ResourceKind::Buffer { size }, clear, history.as_ref(), keep.as_ref()))
+        }
+        ResourceDoc::Image { file, format, loaded, .. } => {
+            let formats = formats(scope, &Spanned::new(FormatDoc::One(format.value.clone()), format.span))?;
+            if formats.iter().any(|format| !matches!(format.info().sample, SampleKind::Float | SampleKind::UnfilterableFloat)) {
+                let reason = format!("an image holds fractions, and {} does not", format.value);
+                let hint = Some("choose a float or normalised format, such as rgba16float".to_owned());
+                scope.report(ValidateError::BadResource { name: name.value.clone(), reason, hint, span: format.span });
+                return None;
+            }
+            let image = loaded.as_ref()?;
+            let edge = |texels: u32| PlacedExpr { expression: Expression::Literal(Value::Int(i64::from(texels))), span: file.span };
+            let kind = ResourceKind::Texture {
+                dimension: Dimension::D2,
+                formats,
+                format_span: format.span,
+                size: Size::Exact(edge(image.width), edge(image.height)),
+                size_span: file.span,
+                layers: None,
+                mips: None,
+                samples: None,
+            };
+            Some(with_past(located, kind, None, None, None))
         }
         ResourceDoc::Texture { dimension, format, size, layers, mips, samples, clear, history, keep, .. } => {
             let dimension = match dimension {
@@ -96,7 +119,7 @@ fn with_past(
 }
 
 /// `Some(None)` where nothing is given, `None` where what is given is wrong.
-fn optional(scope: &mut Scope<'_>, expr: Option<&crate::syntax::document::Expr>) -> Option<Option<super::types::PlacedExpr>> {
+fn optional(scope: &mut Scope<'_>, expr: Option<&crate::syntax::document::Expr>) -> Option<Option<PlacedExpr>> {
     match expr {
         None => Some(None),
         Some(expr) => scope.expression(expr).map(Some),

@@ -1,11 +1,13 @@
 //! The output of validation: the document with names resolved and expressions parsed, loops and conditions still in place.
 
+use std::sync::Arc;
+
 use crate::expand::types::{ClearValue, Dimension, Keep, Located, OnResize, ResourceId, Value};
 use crate::expression::Expression;
 use crate::format::Format;
 use crate::plan::Cull;
 use crate::published::DrawFilter;
-use crate::source::{FileId, Span};
+use crate::source::{FileId, LoadedImage, Span};
 use crate::syntax::document::{BlendDoc, DepthDoc};
 
 /// A document whose every name stands for something.
@@ -27,6 +29,8 @@ pub struct Validated {
     pub outputs: Vec<(Located<String>, PartExpr)>,
     /// Resources whose past is read, each once. Their histories are numbered behind all of `resources`, in this order.
     pub histories: Vec<Located<ResourceId>>,
+    /// Resources that hold what a file says.
+    pub images: Vec<ImageDecl>,
     /// What expressions ask the extents of: `$3.width` is the width of the fourth.
     pub measured: Vec<PartExpr>,
     /// MiB that content may take which is kept though it could be made again.
@@ -78,6 +82,17 @@ pub struct ResourceDecl {
     pub on_resize: OnResize,
     /// What the author says of keeping its content.
     pub keep: Located<Keep>,
+}
+
+/// A resource that holds what a file says.
+#[derive(Debug, Clone, PartialEq)]
+pub struct ImageDecl {
+    /// Which.
+    pub resource: ResourceId,
+    /// What the file holds.
+    pub image: Arc<LoadedImage>,
+    /// Where the file is named.
+    pub span: Span,
 }
 
 /// What a resource is.

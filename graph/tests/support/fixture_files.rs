@@ -9,7 +9,7 @@ use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::published::{
     Collection, PublishedSchema, SceneCounts, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
 };
-use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile};
+use luminaire_graph::source::{FileError, FileKind, Files, LoadedFile, LoadedImage};
 
 pub fn fixtures() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fixtures")
@@ -22,7 +22,7 @@ impl Files for FixtureFiles {
     fn read(&self, kind: FileKind, path: &str) -> Result<LoadedFile, FileError> {
         let (folder, shown) = match kind {
             FileKind::Pipeline | FileKind::Block => (fixtures(), path.to_owned()),
-            FileKind::Shader => (fixtures().join("shaders"), format!("shaders/{path}")),
+            FileKind::Shader | FileKind::Image => (fixtures().join("shaders"), format!("shaders/{path}")),
         };
         match std::fs::read_to_string(folder.join(path)) {
             Ok(text) => Ok(LoadedFile { name: shown, text }),
@@ -30,8 +30,18 @@ impl Files for FixtureFiles {
         }
     }
 
+    /// One image there is, and one that is no image.
+    fn image(&self, path: &str) -> Result<LoadedImage, FileError> {
+        match path {
+            "ramp.exr" => Ok(LoadedImage { name: "shaders/ramp.exr".to_owned(), width: 4, height: 2, texels: vec![[0.5; 4]; 8] }),
+            "noise.exr" => Err(FileError::Unreadable("the file ends in the middle of its texels".to_owned())),
+            _ => Err(FileError::NotFound { searched: vec!["shaders".to_owned()] }),
+        }
+    }
+
     fn known(&self, kind: FileKind) -> Vec<String> {
         let folder = match kind {
+            FileKind::Image => return vec!["ramp.exr".to_owned(), "noise.exr".to_owned()],
             FileKind::Shader => "shaders",
             FileKind::Block => "blocks",
             FileKind::Pipeline => "plans",

@@ -15,7 +15,13 @@ use crate::world::{Aabb, Environment};
 const MODEST: f64 = 64.0;
 
 /// The table for these lights.
-pub(super) fn table(environment: Environment, lights: &Lights, materials: &[Material], bounds: Option<Aabb>) -> EnvironmentTable {
+pub(super) fn table(
+    environment: Environment,
+    lights: &Lights,
+    rectangle_count: usize,
+    materials: &[Material],
+    bounds: Option<Aabb>,
+) -> EnvironmentTable {
     let sky = if environment.sky_radiance.is_finite() { environment.sky_radiance.max(Vec3::ZERO) } else { Vec3::ZERO };
     let unit = light_unit(brightest(sky, lights, materials, bounds));
     EnvironmentTable {
@@ -24,7 +30,7 @@ pub(super) fn table(environment: Environment, lights: &Lights, materials: &[Mate
         inverse_light_unit: 1.0 / unit,
         directional_count: lights.suns.len() as u32,
         local_count: lights.lamps.len() as u32,
-        padding: 0,
+        rectangle_count: rectangle_count as u32,
     }
 }
 

@@ -50,7 +50,8 @@ pub struct EnvironmentTable {
     pub directional_count: u32,
     /// Rows of `local_lights`.
     pub local_count: u32,
-    pub padding: u32,
+    /// Rows of `rectangle_lights`.
+    pub rectangle_count: u32,
 }
 
 /// An element of `directional_lights`.
@@ -89,6 +90,28 @@ pub struct LocalRow {
     pub spot_offset: f32,
     /// Metres beyond which it gives no light; 0 is without end.
     pub reach: f32,
+    pub pad: f32,
+}
+
+/// An element of `rectangle_lights`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct RectangleRow {
+    /// The middle.
+    pub position: [f32; 3],
+    /// 1 where it emits to both sides, else 0.
+    pub two_sided: u32,
+    /// From the middle to the end of its width, metres. It faces along the cross product of this and `half_height`.
+    pub half_width: [f32; 3],
+    /// From the middle to a corner, metres.
+    pub radius: f32,
+    /// From the middle to the end of its height, metres.
+    pub half_height: [f32; 3],
+    /// Square metres.
+    pub area: f32,
+    /// Nits, linear Rec.709, the same in all directions.
+    pub radiance: [f32; 3],
     pub pad: f32,
 }
 

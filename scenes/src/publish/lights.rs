@@ -65,7 +65,8 @@ pub(super) fn collect(world: &mut World, bounds: Option<Aabb>, solid: Option<Aab
     lights
 }
 
-fn place<T: Clone>(list: &mut Vec<Option<T>>, slot: u32, light: Option<T>) {
+/// Puts something at a slot of a list.
+pub(super) fn place<T: Clone>(list: &mut Vec<Option<T>>, slot: u32, light: Option<T>) {
     let slot = slot as usize;
     if list.len() <= slot {
         list.resize(slot + 1, None);
@@ -73,7 +74,8 @@ fn place<T: Clone>(list: &mut Vec<Option<T>>, slot: u32, light: Option<T>) {
     list[slot] = light;
 }
 
-fn strength(color: Vec3, intensity: f32) -> Vec3 {
+/// Color times intensity; none where that is no number.
+pub(super) fn strength(color: Vec3, intensity: f32) -> Vec3 {
     let strength = color * intensity;
     if strength.is_finite() { strength.max(Vec3::ZERO) } else { Vec3::ZERO }
 }

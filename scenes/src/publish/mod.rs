@@ -22,6 +22,7 @@ mod objects;
 mod projection;
 mod publisher;
 mod reach;
+mod rectangles;
 mod request;
 mod schema;
 mod sun;
@@ -33,7 +34,9 @@ mod visible;
 mod tests;
 
 pub use counts::counts;
-pub use layout::{CameraTable, Columns, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, TEXTURES, ViewTable, flags};
+pub use layout::{
+    CameraTable, Columns, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, RectangleRow, TEXTURES, ViewTable, flags,
+};
 pub use publisher::Publisher;
 pub use request::{PublishRequest, Published};
 pub use schema::{COUNT_NAMES, TEXTURE_NAMES, schema};

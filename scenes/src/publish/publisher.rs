@@ -18,7 +18,7 @@ use super::request::{self, PublishRequest, Published};
 use super::sun::SunView;
 use super::texture_cache::TextureCache;
 use super::visible::Visible;
-use super::{environment, lights, materials};
+use super::{environment, lights, materials, rectangles};
 use crate::world::{Environment, Materials, Meshes, camera_pose, update};
 
 /// Publishes a world, and remembers what it published.
@@ -98,11 +98,13 @@ impl Publisher {
         };
         let views = request.views.iter().zip(&suns).map(view_bytes).collect();
         let environment = *world.get_resource_or_init::<Environment>();
-        let environment = environment::table(environment, &lights, &materials, bounds);
+        let rectangles = rectangles::rows(world);
+        let environment = environment::table(environment, &lights, rectangles.len(), &materials, bounds);
         self.set("camera", &[camera.table()]);
         self.set("environment", &[environment]);
         self.set("directional_lights", &lights.directional_rows(request.views, &suns));
         self.set("local_lights", &lights.local_rows());
+        self.set("rectangle_lights", &rectangles);
         if !same_materials || !self.tables.contains_key("materials") {
             self.set("materials", &materials::rows(&materials));
         }

@@ -7,7 +7,7 @@ use luminaire_graph::published::{
     Collection, PublishedSchema, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
 };
 
-use super::layout::{CameraTable, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, TEXTURES, ViewTable};
+use super::layout::{CameraTable, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, RectangleRow, TEXTURES, ViewTable};
 use crate::asset::Vertex;
 
 /// Textures of a material, in the order of the bits of `uv_sets` and the rows of `uv_transforms`.
@@ -22,7 +22,8 @@ pub const TEXTURE_NAMES: [&str; TEXTURES] = [
 ];
 
 /// Names of counts, in the order of [`super::counts`].
-pub const COUNT_NAMES: [&str; 7] = ["directional_lights", "point_lights", "spot_lights", "local_lights", "opaque", "masked", "blended"];
+pub const COUNT_NAMES: [&str; 8] =
+    ["directional_lights", "point_lights", "spot_lights", "local_lights", "rectangle_lights", "opaque", "masked", "blended"];
 
 /// Tables of which a Draw sees what it draws.
 const PER_DRAW: [&str; 3] = ["instances", "instance_slots", "materials"];
@@ -79,6 +80,7 @@ pub fn schema() -> PublishedSchema {
             inverse_light_unit: "f32",
             directional_count: "u32",
             local_count: "u32",
+            rectangle_count: "u32",
         }),
     );
     add(
@@ -109,6 +111,21 @@ pub fn schema() -> PublishedSchema {
             spot_scale: "f32",
             spot_offset: "f32",
             reach: "f32",
+        }),
+    );
+    add(
+        "rectangle_lights",
+        TableKind::Storage,
+        "Rectangles that glow, nits.",
+        size_of::<RectangleRow>(),
+        members!(RectangleRow {
+            position: "vec3<f32>",
+            two_sided: "u32",
+            half_width: "vec3<f32>",
+            radius: "f32",
+            half_height: "vec3<f32>",
+            area: "f32",
+            radiance: "vec3<f32>",
         }),
     );
     add(
@@ -153,10 +170,14 @@ pub fn schema() -> PublishedSchema {
         material_samplers: TEXTURE_NAMES.map(|name| name.replace("_texture", "_sampler")).to_vec(),
         vertex: vertex_schema(),
         counts: COUNT_NAMES.map(str::to_owned).to_vec(),
-        collections: [("directional_lights", "directional_light"), ("local_lights", "local_light")]
-            .map(|(table, element)| (table.to_owned(), Collection { table: table.to_owned(), element: element.to_owned() }))
-            .into_iter()
-            .collect(),
+        collections: [
+            ("directional_lights", "directional_light"),
+            ("local_lights", "local_light"),
+            ("rectangle_lights", "rectangle_light"),
+        ]
+        .map(|(table, element)| (table.to_owned(), Collection { table: table.to_owned(), element: element.to_owned() }))
+        .into_iter()
+        .collect(),
     }
 }
 
@@ -218,6 +239,7 @@ mod tests {
             ("environment", 32),
             ("directional_lights", 96),
             ("local_lights", 64),
+            ("rectangle_lights", 64),
             ("instances", 128),
             ("instance_slots", 4),
             ("materials", 304),

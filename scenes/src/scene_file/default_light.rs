@@ -8,8 +8,8 @@ use luminaire_graph::diagnostic::Diagnostic;
 
 use crate::asset::Asset;
 use crate::world::{
-    Aabb, DirectionalLight, Environment, LocalLight, Name, Transform, assign_slots, camera_inside, camera_pose, look_at,
-    propagate_transforms, scene_bounds, update_bounds,
+    Aabb, DirectionalLight, Environment, LocalLight, Name, Transform, assign_slots, camera_inside, camera_pose, glowing_rectangles,
+    look_at, propagate_transforms, scene_bounds, update_bounds,
 };
 
 /// A white diffuse surface that faces it shows a radiance of 1.
@@ -24,7 +24,7 @@ const SKY: Vec3 = Vec3::new(0.25, 0.37, 0.55);
 /// Whether the asset shows something that stays black without a light.
 pub(super) fn is_missing(asset: &Asset) -> bool {
     let takes_light = |mesh: &crate::asset::Mesh| asset.materials.get(mesh.material).is_some_and(|material| !material.unlit);
-    asset.lights.is_empty() && asset.meshes.iter().any(takes_light)
+    asset.lights.is_empty() && !glowing_rectangles(asset) && asset.meshes.iter().any(takes_light)
 }
 
 /// Illuminance that the lamp of a room gives at half of the room's smaller width, lux.

@@ -60,7 +60,8 @@ pub struct Cone {
     pub outer: f32,
 }
 
-/// Light from a rectangle around the entity's origin that faces along its -Z. The mesh of the same entity shows it.
+/// Light from a rectangle around the entity's origin that faces along its -Z. The mesh of the same entity shows it, or that of its parent.
+/// It is stretched and mirrored with what shows it.
 #[derive(Component, Debug, Clone, Copy, PartialEq)]
 #[require(Transform)]
 pub struct RectangleLight {
@@ -144,6 +145,11 @@ pub struct ObjectSlot(pub u32);
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[component(on_insert = take::<DirectionalSlot>, on_discard = give_back::<DirectionalSlot>)]
 pub struct DirectionalSlot(pub u32);
+
+/// Row of a [`RectangleLight`] in the table `rectangle_lights`.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<RectangleSlot>, on_discard = give_back::<RectangleSlot>)]
+pub struct RectangleSlot(pub u32);
 
 /// Row of a [`LocalLight`] in the table `local_lights`.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

@@ -12,6 +12,7 @@ mod clock;
 mod components;
 mod control;
 mod edit;
+mod glow;
 mod interior;
 mod repeat;
 mod resources;
@@ -36,10 +37,11 @@ pub use camera_path::{CameraPath, Facing, PathInterpolation, PathKey};
 pub use clock::{Time, set_time};
 pub use components::{
     Camera, CameraSlot, Cone, DirectionalLight, DirectionalSlot, Exposure, GlobalTransform, LocalLight, LocalSlot, MeshInstance,
-    ObjectSlot, ProbeVolume, RectangleLight, ReflectionProbe, Transform, Volume,
+    ObjectSlot, ProbeVolume, RectangleLight, RectangleSlot, ReflectionProbe, Transform, Volume,
 };
 pub use control::{Axis, Command, Fly, Orbit, control};
 pub use edit::{find_by_name, set_translation};
+pub(crate) use glow::glowing_rectangles;
 pub use interior::interior_camera;
 pub use repeat::Repeat;
 pub use resources::{Environment, Images, Materials, Meshes, new_world};

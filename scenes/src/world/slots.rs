@@ -10,7 +10,9 @@ use bevy_ecs::lifecycle::HookContext;
 use bevy_ecs::prelude::{Component, Entity, Resource, With, Without, World};
 use bevy_ecs::world::DeferredWorld;
 
-use super::components::{Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot};
+use super::components::{
+    Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot, RectangleLight, RectangleSlot,
+};
 
 /// A component that holds a slot.
 pub(super) trait Slot: Component + Sized {
@@ -31,7 +33,7 @@ macro_rules! slot {
         }
     )*};
 }
-slot!(ObjectSlot, DirectionalSlot, LocalSlot, CameraSlot);
+slot!(ObjectSlot, DirectionalSlot, LocalSlot, RectangleSlot, CameraSlot);
 
 /// Which slots nobody holds.
 #[derive(Resource)]
@@ -87,6 +89,7 @@ pub fn assign_slots(world: &mut World) {
     assign::<MeshInstance, ObjectSlot>(world);
     assign::<DirectionalLight, DirectionalSlot>(world);
     assign::<LocalLight, LocalSlot>(world);
+    assign::<RectangleLight, RectangleSlot>(world);
     assign::<Camera, CameraSlot>(world);
 }
 

@@ -7,6 +7,7 @@ use bevy_ecs::prelude::{Entity, World};
 use glam::{Affine3A, Vec3};
 
 use super::animation::driven_nodes;
+use super::glow::{Panel, light, panel};
 use super::{
     AnimationPlayer, Camera, ChildOf, Cone, DirectionalLight, Exposure, Images, LocalLight, Materials, MeshInstance, Meshes, Name,
     RestPose, Transform, assign_slots,
@@ -25,6 +26,8 @@ pub struct StoredAsset {
     first_mesh: usize,
     /// Per mesh of the asset, its material in the world.
     mesh_materials: Vec<usize>,
+    /// Per mesh of the asset, the rectangle that it is, if it is one.
+    panels: Arc<[Option<Panel>]>,
     /// Rows of its materials in the world, in its own order.
     materials: Range<usize>,
 }
@@ -81,6 +84,7 @@ pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
         mesh.material += first_material;
     }
     let mesh_materials = meshes.iter().map(|mesh| mesh.material).collect();
+    let panels = meshes.iter().map(panel).collect();
     let first_mesh = append(&mut world.get_resource_or_init::<Meshes>().0, meshes);
     let animations = asset.animations.into();
     let nodes: Arc<[Node]> = asset.nodes.into();
@@ -94,12 +98,14 @@ pub fn store_asset(world: &mut World, asset: Asset) -> StoredAsset {
         animations,
         first_mesh,
         mesh_materials,
+        panels,
         materials,
     }
 }
 
 /// Spawns a copy of the asset's nodes below `parent` (or at the root) and returns an entity per node, in the asset's order.
-/// Meshes become children of their node, one each, without a name; lights and cameras stand on the node itself. If the asset has
+/// Meshes become children of their node, one each, without a name, and get a child that is a light where they are glowing rectangles
+/// (see [`super::RectangleLight`]); lights and cameras stand on the node itself. If the asset has
 /// animations, `parent` gets an [`AnimationPlayer`], or an entity of its own does where there is no parent or it has one already.
 pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entity>) -> Vec<Entity> {
     let mut entities: Vec<Entity> = Vec::with_capacity(asset.nodes.len());
@@ -128,7 +134,14 @@ pub fn spawn_stored(world: &mut World, asset: &StoredAsset, parent: Option<Entit
         for mesh in &node.meshes {
             if let Some(material) = asset.mesh_materials.get(*mesh) {
                 let instance = MeshInstance { mesh: asset.first_mesh + mesh, material: *material };
-                world.spawn((Transform(Affine3A::IDENTITY), instance, ChildOf(entity)));
+                let shown = world.spawn((Transform(Affine3A::IDENTITY), instance, ChildOf(entity))).id();
+                let glow = asset.panels.get(*mesh).copied().flatten().and_then(|panel| {
+                    let material = world.get_resource::<Materials>()?.0.get(*material)?;
+                    Some((Transform(panel.place), light(material, panel.size)?))
+                });
+                if let Some(glow) = glow {
+                    world.spawn((glow, ChildOf(shown)));
+                }
             }
         }
         entities.push(entity);

@@ -1,11 +1,14 @@
-//! Textures and buffers of a document.
+//! Textures, images and buffers of a document.
+
+use std::sync::Arc;
 
 use serde::Deserialize;
 
-use super::Expr;
+use super::{Expr, Text};
+use crate::source::LoadedImage;
 use crate::syntax::spanned::Spanned;
 
-/// A texture or a buffer.
+/// A texture, an image or a buffer.
 #[derive(Debug, Clone, PartialEq, Deserialize)]
 #[serde(rename = "Resource", deny_unknown_fields)]
 #[allow(clippy::large_enum_variant, reason = "buffers are few; a box would only burden the reader")]
@@ -41,6 +44,19 @@ pub enum ResourceDoc {
         /// Whether its content is kept from frame to frame.
         #[serde(default)]
         keep: Option<Spanned<KeepDoc>>,
+    },
+    /// A 2D texture that holds what a file says, and that no pass writes.
+    Image {
+        /// For people.
+        #[serde(default)]
+        doc: Option<String>,
+        /// Looked up where shaders are.
+        file: Text,
+        /// One of WebGPU's format names.
+        format: Text,
+        /// What the file holds, once it has been read.
+        #[serde(skip)]
+        loaded: Option<Arc<LoadedImage>>,
     },
     /// Bytes.
     Buffer {
