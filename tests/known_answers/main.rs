@@ -8,8 +8,10 @@
 #[path = "../support/mod.rs"]
 mod support;
 
+mod antialiasing;
 mod brdf;
 mod changes;
+mod forward;
 mod irradiance;
 mod many_lights;
 mod masks;
@@ -31,9 +33,11 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 14] = [
+    let groups: [&[Case]; 16] = [
+        antialiasing::CASES,
         brdf::CASES,
         changes::CASES,
+        forward::CASES,
         irradiance::CASES,
         many_lights::CASES,
         masks::CASES,

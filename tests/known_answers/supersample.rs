@@ -13,7 +13,7 @@ pub const CASES: &[Case] = &[
     ("supersample::exposure takes no new samples", exposure_takes_no_samples),
 ];
 
-const EDGE: u32 = 32;
+pub(super) const EDGE: u32 = 32;
 /// Degrees by which the square is turned.
 const TURN: f64 = 17.0;
 const HALF_WIDTH: f64 = 1.1;
@@ -25,7 +25,7 @@ fn eye() -> Eye {
 }
 
 /// A square in the picture's plane that sends 1 nit, before nothing.
-fn square() -> String {
+pub(super) fn square() -> String {
     format!(
         "({} objects: {{ \"square\": (shape: Box(size: ({width}, {width}, 0.0001)), translation: ({}, {}, -0.00005), rotation: (0, 0, {TURN}),
             surface: (base_color: (0, 0, 0), emissive: (1, 1, 1))) }})",
@@ -37,7 +37,7 @@ fn square() -> String {
 }
 
 /// The part of a pixel that the square covers, by cutting the pixel with each of its sides.
-fn coverage(x: u32, y: u32) -> f64 {
+pub(super) fn coverage(x: u32, y: u32) -> f64 {
     let size = 4.0 / f64::from(EDGE);
     let corner = DVec2::new(-2.0 + f64::from(x) * size, 2.0 - f64::from(y) * size);
     let mut polygon = [(0.0, 0.0), (1.0, 0.0), (1.0, -1.0), (0.0, -1.0)].map(|(u, v)| corner + DVec2::new(u, v) * size).to_vec();

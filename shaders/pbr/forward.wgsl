@@ -1,4 +1,4 @@
-// Surfaces that blend, shaded as they are drawn: emission and direct light, over what stands behind.
+// Surfaces that are shaded as they are drawn: emission and direct light. Those that blend come over what stands behind.
 
 #import "shared/direct_light.wgsl"
 #import "shared/forward_surface.wgsl"
@@ -19,5 +19,8 @@ fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -
 @fragment
 fn shade(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> Targets {
     let drawn = drawn_surface(fragment, front_facing);
+    if is_cut_out(fragment.material, drawn.alpha) {
+        discard;
+    }
     return Targets(vec4<f32>(fit_half(emitted_and_direct_light(drawn.point, vec2<u32>(fragment.clip_position.xy))), saturate(drawn.alpha)));
 }
