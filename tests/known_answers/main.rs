@@ -9,6 +9,7 @@
 mod support;
 
 mod antialiasing;
+mod area;
 mod brdf;
 mod changes;
 mod forward;
@@ -33,8 +34,9 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 16] = [
+    let groups: [&[Case]; 17] = [
         antialiasing::CASES,
+        area::CASES,
         brdf::CASES,
         changes::CASES,
         forward::CASES,
