@@ -35,7 +35,7 @@ fn error(image: &LinearImage, covered: impl Fn(u32, u32) -> f64) -> f64 {
     (sum / edges.len() as f64).sqrt()
 }
 
-/// Measured: 0.31 after one frame, 0.07 after 64.
+/// Measured: 0.264 after one frame, 0.059 after 64.
 fn frames_come_near_the_area() -> Result<(), Failed> {
     let mut session = taa().session(&mut world(&square())?)?;
     let first = error(&frames(&mut session, 1)?, coverage);
@@ -57,7 +57,8 @@ fn what_is_gone_leaves_nothing() -> Result<(), Failed> {
     }
 }
 
-/// Half a pixel to the right in each frame, and half a pixel back at last: the history is found where the camera had it.
+/// Half a pixel to the right in each frame, and back at last: the history is found where the camera had it. Measured: 0.156, where one frame
+/// alone has 0.264.
 fn a_moving_camera() -> Result<(), Failed> {
     let scene = square();
     let eye = |x: f64| Eye::new([x, 0.0, 5.0], [x, 0.0, 0.0], 2.0 * (2.0f64 / 5.0).atan().to_degrees()).ron();
@@ -74,9 +75,11 @@ fn a_moving_camera() -> Result<(), Failed> {
     let image = session.read_output("radiance").map_err(shown)?;
     let off = error(&image, |x, y| if x + 4 < EDGE { coverage(x + 4, y) } else { 0.0 });
     println!("edges are off by {off:.3} while the camera moves");
-    if off < 0.16 { Ok(()) } else { Err(format!("edges are off by {off}").into()) }
+    if off < 0.18 { Ok(()) } else { Err(format!("edges are off by {off}").into()) }
 }
 
+/// Measured: edges are off by 0.263 before and by 0.093 afterwards.
+///
 /// An edge that is nearly level has runs of equal pixels, between which there is one step: afterwards a slope. Where nothing differs nothing
 /// does afterwards.
 fn finished_pictures() -> Result<(), Failed> {
@@ -101,7 +104,7 @@ fn finished_pictures() -> Result<(), Failed> {
     }
     let off = |image: &LinearImage| error(image, coverage);
     println!("edges are off by {:.3} and then by {:.3}; {between} pixels are in between", off(&before), off(&after));
-    if between > 50 && off(&after) < 0.75 * off(&before) && (sums[1] / sums[0] - 1.0).abs() < 0.02 {
+    if between > 50 && off(&after) < 0.5 * off(&before) && (sums[1] / sums[0] - 1.0).abs() < 0.02 {
         return Ok(());
     }
     Err(format!("{between} pixels are in between, off by {} and then {}, sums {sums:?}", off(&before), off(&after)).into())
