@@ -60,7 +60,14 @@ const CASES: &[Case] = &[
         trimmed: REL_MSE_COSINES,
         ..PLAIN
     },
-    Case { scene: "area/area_gloss.gltf", reference: "area/area_gloss.direct.exr", area_lights: "sampled", rel_mse: REL_MSE_POINTS, trimmed: REL_MSE_POINTS, ..PLAIN },
+    Case {
+        scene: "area/area_gloss.gltf",
+        reference: "area/area_gloss.direct.exr",
+        area_lights: "sampled",
+        rel_mse: REL_MSE_POINTS,
+        trimmed: REL_MSE_POINTS,
+        ..PLAIN
+    },
     Case { scene: "leak/leak_sealed.gltf", reference: SEALED, rel_mse: REL_MSE_BESIDE_BLACK, ..PLAIN },
     Case {
         scene: "../assets/seed_scenes_free/scene1.gltf",
