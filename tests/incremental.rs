@@ -129,3 +129,36 @@ fn a_lost_device_runs_everything() {
     harness.lose_device();
     assert_eq!(harness.frame(), all);
 }
+
+/// The next sample runs what a shift of the image reaches, and no shadow map.
+#[test]
+fn a_sample_draws_no_shadow_map() {
+    let case = Case { sets: &[("samples", "4")], ..PBR };
+    let mut harness = case.compile(Harness::new).unwrap_or_else(|problems| panic!("{problems}"));
+    assert!(harness.frame().iter().any(|name| name.contains("shadow")));
+    for _ in 1..4 {
+        let ran = harness.frame();
+        assert!(ran.iter().any(|name| name == "gbuffer") && !ran.iter().any(|name| name.contains("shadow")), "{ran:?}");
+    }
+    harness.settle(2);
+    assert!(harness.frame().is_empty(), "all samples are gathered");
+}
+
+/// More lights than lists of this device hold are an error that names the list and what decides its size.
+#[test]
+fn too_many_lights_have_a_message() {
+    let counts: SceneCounts = schema().counts.into_iter().map(|name| (name, 20_000_000)).collect();
+    let outputs = ["color".to_owned()];
+    let input = CompileInput {
+        pipeline: "pipelines/pbr.ron",
+        files: &DiskFiles::for_pipeline(Path::new("pipelines/pbr.ron")),
+        published: &schema(),
+        counts: &counts,
+        device: &DeviceFacts::webgpu_defaults(),
+        output: [1920, 1080],
+        sets: &[],
+        outputs: Some(&outputs),
+    };
+    let Err(problems) = Harness::new(&input) else { panic!("20 million lights fit") };
+    assert!(problems.contains("light_volumes.lists") && problems.contains("light_tiles.lists"), "{problems}");
+}

@@ -40,7 +40,7 @@ fn as_deferred() -> Result<(), Failed> {
         let (mut sum, mut far_off) = (0.0, 0);
         for (x, y) in places(&deferred["radiance"]) {
             let (a, b) = (texel(&deferred["radiance"], x, y), texel(&forward["radiance"], x, y));
-            let off = (0..3).map(|channel| (a[channel] - b[channel]).abs() / (a[channel] + 0.01)).fold(0.0, f64::max);
+            let off = (0..3).map(|channel| (a[channel] - b[channel]).abs() / (a[channel] + 0.1)).fold(0.0, f64::max);
             sum += off;
             far_off += u32::from(off > 0.02);
             if texel(&deferred["depth"], x, y) != texel(&forward["depth"], x, y) {
