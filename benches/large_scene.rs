@@ -74,7 +74,7 @@ fn plan(world: &mut World) -> (Gpu, Arc<Plan>) {
     let facts = DeviceFacts::webgpu_defaults();
     let gpu = Gpu::open(&GpuOptions { noop: Some(facts.clone()), ..GpuOptions::default() }).expect("the noop device needs no driver");
     assign_slots(world);
-    let sets = [("shadowed_local_lights".to_owned(), LAMPS.to_string()), ("local_shadow_texels".to_owned(), "256".to_owned())];
+    let sets = [("shadowed_point_lights".to_owned(), LAMPS.to_string()), ("local_shadow_texels".to_owned(), "256".to_owned())];
     let compilation = compile_pipeline(&CompileInput {
         pipeline: "pbr",
         files: &DiskFiles::for_pipeline(Path::new("pbr")),

@@ -24,7 +24,7 @@ const GOLDEN: &[Golden] = &[
     ("pbr_still_life_neutral", PBR, "still_life", &[("tone_mapping", "neutral"), ("exposure", "0.5")]),
     ("pbr_night_room", PBR, "night_room", &[]),
     ("sky_low_sun", "pipelines/sky.ron", "low_sun", &[]),
-    ("pbr_night_room_aces", PBR, "night_room", &[("tone_mapping", "aces"), ("shadowed_local_lights", "1")]),
+    ("pbr_night_room_aces", PBR, "night_room", &[("tone_mapping", "aces"), ("shadowed_point_lights", "1")]),
 ];
 
 /// Mean absolute difference of 8-bit values, in steps. On the same driver it is 0; edges that fall to other pixels make 0.1.

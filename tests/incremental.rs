@@ -71,10 +71,10 @@ fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
 fn a_light_that_moves_draws_its_own_six_faces() {
     let mut harness = settled(&PBR);
     harness.change_table("local_lights");
-    harness.change(|input| matches!(input, Input::View(view) if matches!(view.kind, ViewKind::LocalLight(1, _))));
+    harness.change(|input| matches!(input, Input::View(view) if matches!(view.kind, ViewKind::PointLight(1, _))));
     let ran = harness.frame();
     let faces = |light: u32| {
-        ran.iter().filter(|name| (0..6).any(|face| name.starts_with(&format!("shadows.local[{}].", 6 * light + face)))).count()
+        ran.iter().filter(|name| (0..6).any(|face| name.starts_with(&format!("point_shadows.faces[{}].", 6 * light + face)))).count()
     };
     assert_eq!((faces(0), faces(1)), (0, 12), "opaque and masked surfaces of light 1 alone: {ran:?}");
     assert!(!ran.iter().any(|name| name == "gbuffer"), "{ran:?}");
@@ -94,7 +94,7 @@ fn a_resize_leaves_what_does_not_depend_on_the_size() {
     Case { size: [80, 48], ..PBR }.compile(|input| harness.replan(input)).unwrap();
     let ran = harness.frame();
     assert!(ran.iter().any(|name| name == "gbuffer"), "{ran:?}");
-    assert!(!ran.iter().any(|name| name.starts_with("shadows.local")), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("point_shadows.")), "{ran:?}");
 }
 
 #[test]
@@ -103,7 +103,7 @@ fn another_output_runs_what_it_alone_needs() {
     Case { outputs: &["color", "normal"], ..PBR }.compile(|input| harness.replan(input)).unwrap();
     let ran = harness.frame();
     assert!(ran.iter().any(|name| name == "inspect"), "{ran:?}");
-    assert!(!ran.iter().any(|name| name.starts_with("shadows.local") || name == "display.expose"), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("point_shadows.") || name == "display.expose"), "{ran:?}");
 }
 
 #[test]

@@ -18,9 +18,10 @@ fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -
 
 @fragment
 fn shade(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> Targets {
-    let drawn = drawn_surface(fragment, front_facing);
+    var drawn = drawn_surface(fragment, front_facing);
     if is_cut_out(fragment.material, drawn.alpha) {
         discard;
     }
+    drawn.point.pixel = pixel_of_sample(drawn.point.pixel);
     return Targets(vec4<f32>(fit_half(emitted_and_direct_light(drawn.point, vec2<u32>(fragment.clip_position.xy))), saturate(drawn.alpha)));
 }

@@ -16,6 +16,7 @@ fn shade(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> Tar
     if stored_depth == NOTHING_THERE {
         return Targets(vec4<f32>(fit_half(environment.sky_radiance * environment.inverse_light_unit), 1.0));
     }
-    let point = load_gbuffer(texel, unjittered_uv(uv), stored_depth);
+    var point = load_gbuffer(texel, unjittered_uv(uv), stored_depth);
+    point.pixel = pixel_of_sample(point.pixel);
     return Targets(vec4<f32>(fit_half(emitted_and_direct_light(point, vec2<u32>(texel))), 1.0));
 }

@@ -1,14 +1,13 @@
 // Light that reaches a surface straight from the scene's lights, shadows included, and leaves it towards the eye.
 //
-// The first directional light has a shadow map, and so have the first point and spot lights, as many as `local_shadow` has cubes;
-// the others, rectangles among them, give light without shadow. The sky gives none: it is no punctual light.
+// The first lights of each kind have shadow maps (shared/shadow.wgsl), the others, rectangles among them, give light without shadow. The
+// sky gives none: it is no punctual light.
 
 #import "area/rectangle_light.wgsl"
 #import "shared/brdf.wgsl"
 #import "shared/light_lists.wgsl"
 #import "shared/lights.wgsl"
-#import "shared/shadow_local.wgsl"
-#import "shared/shadow_sun.wgsl"
+#import "shared/shadow.wgsl"
 
 var<storage, read> light_lists: array<u32>;
 // Width of the image in pixels.
@@ -24,13 +23,22 @@ fn unblocked_light(point: SurfacePoint, light: Illumination) -> vec3<f32> {
     return surface_brdf(point, light.to_light) * light.illuminance * (cosine * environment.inverse_light_unit);
 }
 
+// The same from one directional light, shadow included.
+fn directional_light(point: SurfacePoint, index: u32) -> vec3<f32> {
+    let light = unblocked_light(point, directional_illumination(index));
+    if all(light <= vec3<f32>(0.0)) {
+        return vec3<f32>(0.0);
+    }
+    return light * directional_visibility(index, point);
+}
+
 // The same from one point or spot light, shadow included.
 fn local_light(point: SurfacePoint, index: u32) -> vec3<f32> {
     let light = unblocked_light(point, local_illumination(index, point.position));
     if all(light <= vec3<f32>(0.0)) {
         return vec3<f32>(0.0);
     }
-    return light * local_visibility(index, point.position, point.geometric_normal);
+    return light * local_visibility(index, point);
 }
 
 // The same from those that may reach a pixel, in their own order.
@@ -55,11 +63,7 @@ fn all_local_light(point: SurfacePoint, texel: vec2<u32>) -> vec3<f32> {
 fn direct_light(point: SurfacePoint, texel: vec2<u32>) -> vec3<f32> {
     var sum = vec3<f32>(0.0);
     for (var i = 0u; i < environment.directional_count; i++) {
-        var light = unblocked_light(point, directional_illumination(i));
-        if i == 0u && any(light > vec3<f32>(0.0)) {
-            light *= sun_visibility(point.position, point.geometric_normal);
-        }
-        sum += light;
+        sum += directional_light(point, i);
     }
     return sum + all_local_light(point, texel) + all_rectangle_light(point);
 }

@@ -19,6 +19,7 @@ fn drawn_surface(fragment: MeshFragment, front_facing: bool) -> DrawnSurface {
 
     var surface: DrawnSurface;
     surface.alpha = base_color.a;
+    surface.point.pixel = fragment.clip_position.xy;
     surface.point.position = view.position + fragment.from_eye;
     surface.point.to_eye = direction_to_view(surface.point.position);
     surface.point.geometric_normal = geometric_normal_of(fragment.from_eye, surface.point.to_eye, fragment.normal);

@@ -38,6 +38,7 @@ fn encode_gbuffer(point: SurfacePoint) -> GbufferTexel {
     );
 }
 
+// All but the pixel.
 fn decode_gbuffer(texel: GbufferTexel, position: vec3<f32>, to_eye: vec3<f32>) -> SurfacePoint {
     let roughness_metallic = unpack_16_8(texel.surface.x);
     let dielectric = unpack4x8unorm(texel.surface.y);

@@ -18,5 +18,7 @@ fn load_gbuffer(texel: vec2<i32>, uv: vec2<f32>, stored_depth: f32) -> SurfacePo
         textureLoad(surface, texel, 0).xy,
         textureLoad(emission, texel, 0).xy,
     );
-    return decode_gbuffer(stored, position, direction_to_camera(position));
+    var point = decode_gbuffer(stored, position, direction_to_camera(position));
+    point.pixel = vec2<f32>(texel) + 0.5;
+    return point;
 }

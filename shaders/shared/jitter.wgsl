@@ -11,6 +11,12 @@ fn jittered(clip_position: vec4<f32>) -> vec4<f32> {
     return vec4<f32>(clip_position.xy + shift * clip_position.w, clip_position.zw);
 }
 
+// A place in the image to start random numbers from that are other ones for each sample: interleaved gradient noise takes another place in
+// each frame so (Jimenez, "Next generation post processing in Call of Duty: Advanced Warfare", 2014).
+fn pixel_of_sample(pixel: vec2<f32>) -> vec2<f32> {
+    return pixel + 5.588238 * (textureLoad(jitter, vec2<i32>(1, 0), 0).x % 64.0);
+}
+
 // The place in the image, (0, 0) at its top left, of what a shifted image shows at `uv`.
 fn unjittered_uv(uv: vec2<f32>) -> vec2<f32> {
     let shift = textureLoad(jitter, vec2<i32>(0, 0), 0).zw;

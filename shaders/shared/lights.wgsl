@@ -7,14 +7,16 @@
 
 struct DirectionalLight {
     direction_to_light: vec3<f32>,
-    // Metres along the edge of a texel of the shadow map.
+    // Of the map that is fitted to all that the camera sees, where a pipeline has one: metres along the edge of a texel.
     shadow_texel_size: f32,
     // Lux on a surface that faces the light.
     illuminance: vec3<f32>,
-    // Metres between depth 0 and depth 1 of the shadow map.
+    // Metres between depth 0 and depth 1 of that map.
     shadow_depth_range: f32,
-    // Clip space of the shadow view: orthographic.
+    // Clip space of that map's view: orthographic.
     shadow_from_world: mat4x4<f32>,
+    // How many cascades it has; cascade c of light l is row `l * cascades + c` of `cascades`.
+    cascades: u32,
 }
 
 struct LocalLight {
@@ -23,17 +25,15 @@ struct LocalLight {
     range: f32,
     // Candela, on the axis of a spot.
     intensity: vec3<f32>,
-    // Near plane of the shadow views, metres.
-    shadow_near: f32,
+    // Metres beyond which a light without a range gives nothing; 0 is no end.
+    reach: f32,
     // Axis of a spot, away from the light.
     direction: vec3<f32>,
-    // Far plane of the shadow views, metres.
-    shadow_far: f32,
+    // Which shadow map is its own: row k of `point_lights` as k, row k of `spot_lights` as -1 - k.
+    shadow: i32,
     // Strength of a spot is saturate(cosine * spot_scale + spot_offset)^2; points have 0 and 1.
     spot_scale: f32,
     spot_offset: f32,
-    // Metres beyond which a light without a range gives nothing; 0 is no end.
-    reach: f32,
 }
 
 var<storage, read> directional_lights: array<DirectionalLight>;

@@ -1,6 +1,8 @@
 // A point of a surface, ready to be shaded. The G-buffer and forward shading both produce it; light functions take it.
 
 struct SurfacePoint {
+    // Where it shows in the image, texels from the upper left corner. What must differ from texel to texel starts from it.
+    pixel: vec2<f32>,
     position: vec3<f32>,
     // Unit vector to the eye.
     to_eye: vec3<f32>,

@@ -20,6 +20,7 @@ mod materials;
 mod noon;
 mod orientation;
 mod runs;
+mod shadow_kinds;
 mod shadows;
 mod sky;
 mod steady;
@@ -34,7 +35,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 17] = [
+    let groups: [&[Case]; 18] = [
         antialiasing::CASES,
         area::CASES,
         brdf::CASES,
@@ -47,6 +48,7 @@ fn main() {
         noon::CASES,
         orientation::CASES,
         runs::CASES,
+        shadow_kinds::CASES,
         shadows::CASES,
         sky::CASES,
         steady::CASES,

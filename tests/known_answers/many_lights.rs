@@ -76,7 +76,7 @@ fn above() -> Eye {
 }
 
 fn a_thousand_lights() -> Result<(), Failed> {
-    let shot = Shot::pbr(192, &["radiance"]).set("shadowed_local_lights", 8).set("local_shadow_texels", 128);
+    let shot = Shot::pbr(192, &["radiance"]).set("shadowed_point_lights", 8).set("local_shadow_texels", 128);
     let mean = agree("a thousand lights", &shot, &lamps(1000, &above(), "")?)?;
     println!("a thousand lights: a mean of {mean:.4} nits");
     if mean > 0.01 { Ok(()) } else { Err(format!("it is dark: {mean}").into()) }

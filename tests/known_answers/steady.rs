@@ -75,12 +75,12 @@ fn same_images(a: &[(&str, LinearImage)], b: &[(&str, LinearImage)], when: &str)
 
 /// What is replaced in the scene, and a pass of `pbr` that must not run for it.
 const CHANGES: [(&str, &str, &str, &str); 7] = [
-    ("the camera moves", "(0.0, 2.0, 5.0)", "(0.3, 2.2, 4.8)", "shadows.local[0].opaque"),
+    ("the camera moves", "(0.0, 2.0, 5.0)", "(0.3, 2.2, 4.8)", "point_shadows.faces[0].opaque"),
     ("the lamp moves", "position: (1, 1.5, 1)", "position: (0.7, 1.6, 1.2)", "gbuffer"),
-    ("the lamp is brighter", "candela: 3", "candela: 5", "shadows.local[0].opaque"),
-    ("the sun is dimmer", "lux: 2", "lux: 1", "shadows.sun_opaque"),
+    ("the lamp is brighter", "candela: 3", "candela: 5", "point_shadows.faces[0].opaque"),
+    ("the sun is dimmer", "lux: 2", "lux: 1", "sun_shadows.light[0].cascade[0].opaque"),
     ("a ball moves", "translation: (-0.8, 0.6, 0)", "translation: (-0.7, 0.7, 0.1)", "nothing"),
-    ("a surface gets rougher", "roughness: 0.3", "roughness: 0.5", "shadows.sun_opaque"),
+    ("a surface gets rougher", "roughness: 0.3", "roughness: 0.5", "sun_shadows.light[0].cascade[0].opaque"),
     ("the sky turns", "sky_radiance: (0.1, 0.2, 0.4)", "sky_radiance: (0.3, 0.2, 0.1)", "gbuffer"),
 ];
 

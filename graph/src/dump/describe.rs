@@ -161,7 +161,9 @@ pub(super) fn view(kind: ViewKind) -> String {
     match kind {
         ViewKind::Camera => "the camera".to_owned(),
         ViewKind::DirectionalLight(light) => format!("directional light {light}"),
-        ViewKind::LocalLight(light, face) => format!("local light {light}, face {face}"),
+        ViewKind::Cascade(cascade) => format!("directional light {}, cascade {}", cascade.light, cascade.index),
+        ViewKind::PointLight(light, face) => format!("point light {light}, face {face}"),
+        ViewKind::SpotLight(light) => format!("spot light {light}"),
     }
 }
 

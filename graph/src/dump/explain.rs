@@ -130,7 +130,7 @@ fn idle(idle: Idle) -> (&'static str, String) {
     }
 }
 
-/// The name of an input: `camera.exposure`, `local_lights[2]`, `view of local light 0, face 3`.
+/// The name of an input: `camera.exposure`, `local_lights[2]`, `view of point light 0, face 3`.
 pub(crate) fn input_name(plan: &Plan, index: usize) -> String {
     match plan.inputs.get(index) {
         Some(Input::Table(name, reads)) => format!("{name}{reads}"),

@@ -15,6 +15,7 @@ mod passes;
 mod resources;
 mod rules;
 pub mod types;
+mod views;
 mod writers;
 
 pub use error::{BLOCK_ALONE, ExpandError};

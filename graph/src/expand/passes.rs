@@ -8,9 +8,8 @@ use std::sync::Arc;
 use super::environment::Environment;
 use super::error::ExpandError;
 use super::types::{Element, Indices, Located, Output, PartRef, Pass, PassId, PassKind, Resource, Run, Shape, Slot, Spread, Value, Work};
-use crate::published::ViewKind;
 use crate::source::FileId;
-use crate::validate::types::{BlockDecl, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, Validated, View, WorkDecl};
+use crate::validate::types::{BlockDecl, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, Validated, WorkDecl};
 use crate::validate::without_indices;
 
 /// Pipelines longer than this are refused.
@@ -228,21 +227,7 @@ impl Unroller<'_, '_> {
                 vertex: vertex.clone(),
                 fragment: fragment.clone(),
                 objects: *objects,
-                view: match view {
-                    View::Camera => ViewKind::Camera,
-                    View::DirectionalLight(index) => ViewKind::DirectionalLight(self.small(index, "the light of", name)?),
-                    View::LocalLight(index, face) => {
-                        let (light, face_index) = (self.small(index, "the light of", name)?, self.small(face, "the face of", name)?);
-                        if face_index > 5 {
-                            return self.environment.bad(
-                                &format!("the face of `{name}`"),
-                                format!("a cube has faces 0 to 5, not {face_index}"),
-                                face.span,
-                            );
-                        }
-                        ViewKind::LocalLight(light, face_index)
-                    }
-                },
+                view: self.view(view, name)?,
                 depth: *depth,
                 cull: *cull,
                 blend: blend.clone(),

@@ -144,8 +144,53 @@ pub enum ViewKind {
     Camera,
     /// The shadow view of a directional light, by its index among directional lights.
     DirectionalLight(u32),
-    /// A cube face of a point or spot light, by its index among those, and the face.
-    LocalLight(u32, u32),
+    /// The shadow view of a directional light, fitted to a part of what the camera sees.
+    Cascade(CascadeView),
+    /// A cube face of a point light, by its index among those, and the face.
+    PointLight(u32, u32),
+    /// The shadow view of a spot light, by its index among those.
+    SpotLight(u32),
+}
+
+/// Which part of the camera's frustum a view of a directional light is fitted to.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CascadeView {
+    /// The light's index among directional lights.
+    pub light: u32,
+    /// Which part, from 0, the nearest; less than `count`.
+    pub index: u32,
+    /// How the frustum is parted.
+    pub split: CascadeSplit,
+}
+
+/// How the camera's frustum is parted in depth.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct CascadeSplit {
+    /// How many parts; not 0.
+    pub count: u32,
+    /// Metres from the camera to where the last part ends, at most.
+    pub distance: Positive,
+    /// From 0, parts of equal depth, to 1, parts that double in depth.
+    pub lambda: Positive,
+    /// Whether a camera that moves shifts the views by whole texels.
+    pub snap: bool,
+}
+
+/// A finite number that is not negative: such numbers are in the order of their bits.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
+pub struct Positive(u32);
+
+impl Positive {
+    /// What is negative or no number becomes 0, what is infinite the largest number.
+    pub fn new(value: f32) -> Positive {
+        // The sum makes a plain zero of a negative one.
+        Positive((value.clamp(0.0, f32::MAX).max(0.0) + 0.0).to_bits())
+    }
+
+    /// The number.
+    pub fn get(self) -> f32 {
+        f32::from_bits(self.0)
+    }
 }
 
 /// Which surfaces a draw list holds.

@@ -4,7 +4,7 @@ use super::error::ValidateError;
 use super::loops;
 use super::resources::plain_clear;
 use super::scope::Scope;
-use super::types::{Condition, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, View, WorkDecl};
+use super::types::{CascadeDecl, Condition, Item, PartExpr, PassDecl, PassKindDecl, PlacedExpr, RunDecl, View, WorkDecl};
 use crate::expand::types::Located;
 use crate::plan::Cull;
 use crate::published::DrawFilter;
@@ -72,6 +72,34 @@ impl<'a> Common<'a> {
     }
 }
 
+/// Every expression is looked at, so that all problems come at once.
+fn drawn_from(scope: &mut Scope<'_>, view: &ViewDoc) -> Option<View> {
+    match view {
+        ViewDoc::Camera => Some(View::Camera),
+        ViewDoc::DirectionalLight(index) => scope.expression(index).map(View::DirectionalLight),
+        ViewDoc::Cascade { light, index, count, distance, lambda, snap } => {
+            let [light, index, count, distance, lambda] = [light, index, count, distance, lambda].map(|expr| scope.expression(expr));
+            let snap = snap.as_ref().map(|snap| scope.expression(snap));
+            Some(View::Cascade(Box::new(CascadeDecl {
+                light: light?,
+                index: index?,
+                count: count?,
+                distance: distance?,
+                lambda: lambda?,
+                snap: match snap {
+                    None => None,
+                    Some(snap) => Some(snap?),
+                },
+            })))
+        }
+        ViewDoc::PointLight(index, face) => {
+            let (index, face) = (scope.expression(index), scope.expression(face));
+            Some(View::PointLight(index?, face?))
+        }
+        ViewDoc::SpotLight(index) => scope.expression(index).map(View::SpotLight),
+    }
+}
+
 fn slots(entries: &Entries<Text>) -> Vec<(Located<String>, &Text)> {
     entries.iter().map(|(name, part)| (located(name), part)).collect()
 }
@@ -97,14 +125,7 @@ fn pass(scope: &mut Scope<'_>, name: &Text, pass: &PassDoc) -> Option<PassDecl> 
             after,
             ..
         } => {
-            let view = match &view.value {
-                ViewDoc::Camera => Some(View::Camera),
-                ViewDoc::DirectionalLight(index) => scope.expression(index).map(View::DirectionalLight),
-                ViewDoc::LocalLight(index, face) => match (scope.expression(index), scope.expression(face)) {
-                    (Some(index), Some(face)) => Some(View::LocalLight(index, face)),
-                    _ => None,
-                },
-            };
+            let view = drawn_from(scope, &view.value);
             check_depth(scope, name, depth.as_ref(), [read, write, modify]);
             let kind = view.map(|view| PassKindDecl::Draw {
                 vertex: vertex.as_ref().map(located),

@@ -132,7 +132,7 @@ impl<'a> Scope<'a> {
         Some(part)
     }
 
-    /// What a name stands for in the current file: `radiance`, `shadows.sun`, `display.color`.
+    /// What a name stands for in the current file: `radiance`, `shadows.maps`, `display.color`.
     pub fn resolve(&mut self, name: &str, span: Span) -> Option<PartExpr> {
         let instance = self.instance();
         match name.split_once('.') {

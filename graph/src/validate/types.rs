@@ -336,7 +336,21 @@ pub enum PassKindDecl {
 pub enum View {
     Camera,
     DirectionalLight(PlacedExpr),
-    LocalLight(PlacedExpr, PlacedExpr),
+    Cascade(Box<CascadeDecl>),
+    PointLight(PlacedExpr, PlacedExpr),
+    SpotLight(PlacedExpr),
+}
+
+/// A part of what the camera sees, along a directional light.
+#[derive(Debug, Clone, PartialEq)]
+#[allow(missing_docs)]
+pub struct CascadeDecl {
+    pub light: PlacedExpr,
+    pub index: PlacedExpr,
+    pub count: PlacedExpr,
+    pub distance: PlacedExpr,
+    pub lambda: PlacedExpr,
+    pub snap: Option<PlacedExpr>,
 }
 
 /// How much a Compute works.

@@ -1,4 +1,4 @@
-//! Which objects each face of a lamp's shadow cube sees.
+//! Which objects each face of a point light's shadow cube sees.
 //!
 //! An object is seen by a face if its bounds come within the lamp's reach and meet the face's pyramid. Kept from frame to frame: a lamp
 //! that moves asks the spatial index, an object that moves is tested against every lamp. Accepted downside: bounds are boxes, so that
@@ -24,7 +24,7 @@ struct Seen {
     faces: Vec<u8>,
 }
 
-/// What the faces of all lamps see that draw lists ask for, by slot of the lamp.
+/// What the faces of all lamps see that draw lists ask for, by slot of the point light.
 #[derive(Debug, Default)]
 pub(super) struct Casters(BTreeMap<u32, Seen>);
 
@@ -39,11 +39,11 @@ impl Casters {
         changed: &Changed,
     ) -> BTreeSet<(u32, u32)> {
         let wanted: BTreeSet<u32> =
-            wanted.filter_map(|view| if let ViewKind::LocalLight(lamp, _) = view { Some(lamp) } else { None }).collect();
+            wanted.filter_map(|view| if let ViewKind::PointLight(lamp, _) = view { Some(lamp) } else { None }).collect();
         self.0.retain(|lamp, _| wanted.contains(lamp));
         let mut others = BTreeSet::new();
         for light in wanted {
-            let Some(lamp) = lights.lamps.get(light as usize).copied().flatten() else {
+            let Some(lamp) = lights.point(light) else {
                 let gone = self.0.remove(&light).is_some();
                 others.extend((0..6).filter(|_| gone).map(|face| (light, face)));
                 continue;

@@ -29,6 +29,16 @@ impl Frustum {
         Frustum { planes }
     }
 
+    /// What a square pyramid holds up to a distance along its axis: `half` is the tangent of its half angle, `axes` are of unit length.
+    pub(super) fn pyramid(apex: DVec3, axes: [DVec3; 2], forward: DVec3, half: f64, far: f64) -> Frustum {
+        let through = |normal: DVec3, point: DVec3| (normal, -normal.dot(point));
+        let mut planes = vec![through(forward, apex), through(-forward, apex + forward * far)];
+        for axis in axes {
+            planes.extend([axis, -axis].map(|axis| through(forward * half + axis, apex)));
+        }
+        Frustum { planes }
+    }
+
     /// Everything along the third axis of a frame, above and below a rectangle of the first two: `middle` and `half` along each.
     pub(super) fn along(axes: [DVec3; 2], middle: [f64; 2], half: [f64; 2]) -> Frustum {
         let sides = |index: usize| [(axes[index], half[index] - middle[index]), (-axes[index], half[index] + middle[index])];
@@ -89,6 +99,17 @@ mod tests {
         let column = Frustum::along([DVec3::X, DVec3::Z], [1.0, -2.0], [3.0, 4.0]);
         assert!(column.sees(cube(Vec3::new(4.4, 1e6, -6.4), 0.5)) && !column.sees(cube(Vec3::new(4.6, 0.0, 0.0), 0.5)));
         assert!(!column.sees(cube(Vec3::new(-2.6, 0.0, 0.0), 0.5)) && !column.sees(cube(Vec3::new(0.0, 0.0, 2.6), 0.5)));
+        let pyramid = Frustum::pyramid(DVec3::Y, [DVec3::X, DVec3::Y], DVec3::Z, 0.5, 10.0);
+        for (center, seen) in [
+            (Vec3::new(0.0, 1.0, 5.0), true),
+            (Vec3::new(2.9, 1.0, 5.0), true),
+            (Vec3::new(3.4, 1.0, 5.0), false),
+            (Vec3::new(0.0, 4.4, 5.0), false),
+            (Vec3::new(0.0, 1.0, -1.5), false),
+            (Vec3::new(0.0, 1.0, 10.6), false),
+        ] {
+            assert_eq!(pyramid.sees(cube(center, 0.5)), seen, "{center}");
+        }
     }
 
     proptest! {

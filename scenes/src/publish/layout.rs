@@ -67,6 +67,25 @@ pub struct DirectionalRow {
     /// Metres between depth 0 and depth 1.
     pub shadow_depth_range: f32,
     pub shadow_from_world: Columns,
+    /// How many cascades it has; 0 is none. Cascade c of light l is row `l * cascades + c` of `cascades`.
+    pub cascades: u32,
+    pub pad: [u32; 3],
+}
+
+/// An element of `cascades`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct CascadeRow {
+    pub shadow_from_world: Columns,
+    /// Metres along one texel of the map; 0 where there is no map.
+    pub texel_size: f32,
+    /// Metres between depth 0 and depth 1.
+    pub depth_range: f32,
+    /// Metres along the camera's axis to where this part of the frustum ends.
+    pub end: f32,
+    /// Metres along the camera's axis to where shadows end; very far where the scene ends first.
+    pub fade_end: f32,
 }
 
 /// An element of `local_lights`.
@@ -79,18 +98,47 @@ pub struct LocalRow {
     pub range: f32,
     /// Candela, linear Rec.709.
     pub intensity: [f32; 3],
-    /// Near plane of the cube faces, metres.
-    pub shadow_near: f32,
+    /// Metres beyond which it gives no light; 0 is without end.
+    pub reach: f32,
     /// Along the light's axis.
     pub direction: [f32; 3],
-    /// Far plane of the cube faces, metres.
-    pub shadow_far: f32,
+    /// Which shadow map is its own: row k of `point_lights` as k, row k of `spot_lights` as -1 - k.
+    pub shadow: i32,
     /// Cone attenuation is `saturate(cos * spot_scale + spot_offset)^2`; 0 and 1 for point lights.
     pub spot_scale: f32,
     pub spot_offset: f32,
-    /// Metres beyond which it gives no light; 0 is without end.
-    pub reach: f32,
-    pub pad: f32,
+    pub pad: [f32; 2],
+}
+
+/// An element of `point_lights`: a light whose shadows need a cube.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct PointRow {
+    pub position: [f32; 3],
+    /// Near plane of the cube faces, metres.
+    pub near: f32,
+    /// Far plane of the cube faces, metres; 0 where there is no light.
+    pub far: f32,
+    /// Row of `local_lights`.
+    pub light: u32,
+    pub pad: [u32; 2],
+}
+
+/// An element of `spot_lights`: a light whose shadows need one map.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct SpotRow {
+    pub shadow_from_world: Columns,
+    /// Near plane, metres along the light's axis.
+    pub near: f32,
+    /// Far plane, metres along the light's axis; 0 where there is no light.
+    pub far: f32,
+    /// Half the map's width, a metre from the light.
+    pub half_width: f32,
+    /// Row of `local_lights`.
+    pub light: u32,
 }
 
 /// An element of `rectangle_lights`.

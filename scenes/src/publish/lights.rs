@@ -6,11 +6,15 @@ use bevy_ecs::prelude::World;
 use glam::{DVec3, Vec3};
 use luminaire_graph::published::{ViewKind, ViewRequest};
 
-use super::layout::{DirectionalRow, LocalRow};
+use super::layout::{DirectionalRow, LocalRow, PointRow, SpotRow};
 use super::projection::{single, vector};
 use super::reach::{Reach, reach};
+use super::spot::SpotView;
 use super::sun::SunView;
-use crate::world::{Aabb, Cone, DirectionalLight, DirectionalSlot, Environment, GlobalTransform, LocalLight, LocalSlot, Shown, rigid_axes};
+use crate::world::{
+    Aabb, Cone, DirectionalLight, DirectionalSlot, Environment, GlobalTransform, LocalLight, LocalSlot, PointSlot, Shown, SpotSlot,
+    rigid_axes,
+};
 
 /// A directional light in world space.
 #[derive(Debug, Clone, Copy)]
@@ -31,8 +35,16 @@ pub(super) struct Lamp {
     pub(super) intensity: Vec3,
     /// Metres.
     range: Option<f32>,
-    cone: Option<Cone>,
+    pub(super) cone: Option<Cone>,
     pub(super) reach: Reach,
+    shadow: Shadow,
+}
+
+/// Which shadow map a point or spot light has, by its slot among those of the kind.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Shadow {
+    Cube(u32),
+    Map(u32),
 }
 
 /// Lights by slot.
@@ -40,6 +52,9 @@ pub(super) struct Lamp {
 pub(super) struct Lights {
     pub(super) suns: Vec<Option<Sun>>,
     pub(super) lamps: Vec<Option<Lamp>>,
+    /// Indices into `lamps` of those with a shadow cube, and of those with a map.
+    points: Vec<Option<u32>>,
+    spots: Vec<Option<u32>>,
 }
 
 /// Reads the lights. What is not finite gives no light. `bounds` are those of all objects, `solid` of those that throw shadows.
@@ -51,15 +66,27 @@ pub(super) fn collect(world: &mut World, bounds: Option<Aabb>, solid: Option<Aab
         let sun = Sun { to_light: back, illuminance: strength(light.color, light.illuminance) };
         place(&mut lights.suns, slot.0, Some(sun).filter(|_| shown.0));
     }
-    for (light, slot, transform, shown) in world.query::<(&LocalLight, &LocalSlot, &GlobalTransform, &Shown)>().iter(world) {
+    type Local<'a> = (&'a LocalLight, &'a LocalSlot, Option<&'a PointSlot>, Option<&'a SpotSlot>, &'a GlobalTransform, &'a Shown);
+    for (light, slot, point, spot, transform, shown) in world.query::<Local<'_>>().iter(world) {
         let (.., back) = rigid_axes(transform.0.matrix3);
         let position = Vec3::from(transform.0.translation);
-        let finite = position.is_finite();
+        let finite = position.is_finite() && light.cone.is_none_or(|cone| cone.inner.is_finite() && cone.outer.is_finite());
         let position = if finite { position.as_dvec3() } else { DVec3::ZERO };
         let intensity = if finite { strength(light.color, light.intensity) } else { Vec3::ZERO };
         let range = light.range.filter(|range| range.is_finite() && *range > 0.0);
         let reach = reach(position, intensity, range, least, bounds, solid);
-        let lamp = Lamp { position, axis: -back, intensity, range, cone: light.cone, reach };
+        let shadow = match (point, spot) {
+            (_, Some(spot)) => {
+                place(&mut lights.spots, spot.0, Some(slot.0));
+                Shadow::Map(spot.0)
+            }
+            (point, None) => {
+                let point = point.map_or(0, |point| point.0);
+                place(&mut lights.points, point, Some(slot.0));
+                Shadow::Cube(point)
+            }
+        };
+        let lamp = Lamp { position, axis: -back, intensity, range, cone: light.cone, reach, shadow };
         place(&mut lights.lamps, slot.0, Some(lamp).filter(|_| shown.0));
     }
     lights
@@ -81,6 +108,25 @@ pub(super) fn strength(color: Vec3, intensity: f32) -> Vec3 {
 }
 
 impl Lights {
+    /// How many rows `point_lights` has, and `spot_lights`.
+    pub(super) fn cubes_and_maps(&self) -> [usize; 2] {
+        [self.points.len(), self.spots.len()]
+    }
+
+    /// The light with a shadow cube of this slot.
+    pub(super) fn point(&self, slot: u32) -> Option<Lamp> {
+        self.lamp(self.points.get(slot as usize))
+    }
+
+    /// The light with a shadow map of this slot.
+    pub(super) fn spot(&self, slot: u32) -> Option<Lamp> {
+        self.lamp(self.spots.get(slot as usize))
+    }
+
+    fn lamp(&self, lamp: Option<&Option<u32>>) -> Option<Lamp> {
+        self.lamps.get(lamp.copied().flatten()? as usize).copied().flatten()
+    }
+
     /// Where a directional light comes from; a light that is not there shines down.
     pub(super) fn to_sun(&self, light: u32) -> DVec3 {
         self.suns.get(light as usize).copied().flatten().map_or(DVec3::Y, |sun| sun.to_light)
@@ -101,6 +147,13 @@ impl Lights {
                 row.shadow_depth_range = single(fitted.depth_range);
                 row.shadow_from_world = fitted.table.projection_from_world;
             }
+            row.cascades = views
+                .iter()
+                .find_map(|view| match view.kind {
+                    ViewKind::Cascade(cascade) if cascade.light as usize == index => Some(cascade.split.count),
+                    _ => None,
+                })
+                .unwrap_or(0);
             row
         };
         self.suns.iter().enumerate().map(row).collect()
@@ -110,22 +163,46 @@ impl Lights {
     pub(super) fn local_rows(&self) -> Vec<LocalRow> {
         let row = |lamp: &Option<Lamp>| {
             let Some(lamp) = lamp else { return <LocalRow as bytemuck::Zeroable>::zeroed() };
-            let [near, far] = lamp.reach.planes;
             let [spot_scale, spot_offset] = cone_factors(lamp.cone);
             LocalRow {
                 position: vector(lamp.position),
                 range: lamp.range.unwrap_or(0.0),
                 intensity: lamp.intensity.to_array(),
-                shadow_near: single(near),
+                reach: single(lamp.reach.end),
                 direction: vector(lamp.axis),
-                shadow_far: single(far),
+                shadow: match lamp.shadow {
+                    Shadow::Cube(slot) => slot as i32,
+                    Shadow::Map(slot) => -1 - slot as i32,
+                },
                 spot_scale,
                 spot_offset,
-                reach: single(lamp.reach.end),
-                pad: 0.0,
+                pad: [0.0; 2],
             }
         };
         self.lamps.iter().map(row).collect()
+    }
+
+    /// The table `point_lights`.
+    pub(super) fn point_rows(&self) -> Vec<PointRow> {
+        let row = |slot: u32| {
+            let Some(lamp) = self.point(slot) else { return <PointRow as bytemuck::Zeroable>::zeroed() };
+            let [near, far] = lamp.reach.planes.map(single);
+            let light = self.points.get(slot as usize).copied().flatten().unwrap_or(0);
+            PointRow { position: vector(lamp.position), near, far, light, pad: [0; 2] }
+        };
+        (0..self.points.len() as u32).map(row).collect()
+    }
+
+    /// The table `spot_lights`.
+    pub(super) fn spot_rows(&self) -> Vec<SpotRow> {
+        let row = |slot: u32| {
+            let Some(lamp) = self.spot(slot) else { return <SpotRow as bytemuck::Zeroable>::zeroed() };
+            let view = SpotView::of(&lamp);
+            let [near, far] = lamp.reach.planes.map(single);
+            let light = self.spots.get(slot as usize).copied().flatten().unwrap_or(0);
+            SpotRow { shadow_from_world: view.table.projection_from_world, near, far, half_width: single(view.half), light }
+        };
+        (0..self.spots.len() as u32).map(row).collect()
     }
 }
 
@@ -141,7 +218,7 @@ fn cone_factors(cone: Option<Cone>) -> [f32; 2] {
     let Some(cone) = cone else { return [0.0, 1.0] };
     let scale = 1.0 / (cone.inner.cos() - cone.outer.cos()).max(0.001);
     let offset = -cone.outer.cos() * scale;
-    if scale.is_finite() && offset.is_finite() { [scale, offset] } else { [0.0, 1.0] }
+    if scale.is_finite() && offset.is_finite() { [scale, offset] } else { [1.0, 0.0] }
 }
 
 #[cfg(test)]

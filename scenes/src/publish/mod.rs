@@ -6,6 +6,7 @@
 //! Accepted downside: every object's ticks are looked at, lights are read anew, and a view that moves tests the bounds of all
 //! objects.
 
+mod cascades;
 mod casters;
 mod counts;
 mod coverage;
@@ -25,6 +26,7 @@ mod reach;
 mod rectangles;
 mod request;
 mod schema;
+mod spot;
 mod sun;
 mod texture_cache;
 mod textures;
@@ -35,7 +37,8 @@ mod tests;
 
 pub use counts::counts;
 pub use layout::{
-    CameraTable, Columns, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, RectangleRow, TEXTURES, ViewTable, flags,
+    CameraTable, CascadeRow, Columns, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, PointRow, RectangleRow,
+    SpotRow, TEXTURES, ViewTable, flags,
 };
 pub use publisher::Publisher;
 pub use request::{PublishRequest, Published};

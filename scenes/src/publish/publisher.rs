@@ -7,7 +7,7 @@ use bytemuck::Pod;
 use glam::DVec3;
 use indexmap::IndexMap;
 use luminaire_graph::diagnostic::Diagnostic;
-use luminaire_graph::published::{PublishedScene, Table, ViewKind};
+use luminaire_graph::published::{CascadeView, PublishedScene, Table, ViewKind};
 
 use super::draws::{Distance, DrawInput, Draws};
 use super::frustum::Frustum;
@@ -15,10 +15,11 @@ use super::geometry::{self, Geometry};
 use super::objects::Objects;
 use super::projection::CameraView;
 use super::request::{self, PublishRequest, Published};
+use super::spot::SpotView;
 use super::sun::SunView;
 use super::texture_cache::TextureCache;
 use super::visible::Visible;
-use super::{environment, lights, materials, rectangles};
+use super::{cascades, environment, lights, materials, rectangles};
 use crate::world::{Environment, Materials, Meshes, camera_pose, update};
 
 /// Publishes a world, and remembers what it published.
@@ -38,7 +39,8 @@ pub struct Publisher {
 
 impl Publisher {
     /// Publishes the world as it is now, and brings it up to date first ([`update`]).
-    /// Errors: `world::unknown-camera`, `publish::unknown-light`, `publish::unknown-face`, `publish::too-much-geometry`.
+    /// Errors: `world::unknown-camera`, `publish::unknown-light`, `publish::unknown-face`, `publish::mixed-cascades`,
+    /// `publish::too-much-geometry`.
     pub fn publish(&mut self, world: &mut World, request: &PublishRequest<'_>) -> Result<Published, Vec<Diagnostic>> {
         if self.seen.is_some_and(|(known, _)| known != world.id()) {
             *self = Publisher::default();
@@ -74,23 +76,23 @@ impl Publisher {
         let solid = self.objects.solid_bounds;
         let suns: Vec<Option<SunView>> = request.views.iter().map(|view| request::sun_view(view, &camera, &lights, solid)).collect();
         let frusta = |view| match view {
-            ViewKind::DirectionalLight(light) => {
+            ViewKind::DirectionalLight(light) | ViewKind::Cascade(CascadeView { light, .. }) => {
                 // A light that is not there has no shadows.
                 let sun = lights.suns.get(light as usize).copied().flatten();
                 let maps = request.views.iter().zip(&suns).filter(|(request, _)| request.kind == view && sun.is_some());
                 maps.filter_map(|(_, map)| map.as_ref().map(|map| map.casters.clone())).collect()
             }
-            ViewKind::Camera | ViewKind::LocalLight(..) => vec![Frustum::of_camera(&camera)],
+            ViewKind::SpotLight(light) => lights.spot(light).map(|lamp| SpotView::of(&lamp).casters).into_iter().collect(),
+            ViewKind::Camera | ViewKind::PointLight(..) => vec![Frustum::of_camera(&camera)],
         };
         let views = self.visible.update(world, &wanted.iter().map(|(_, view)| *view).collect(), frusta, &lights, &self.objects, &changed);
         let (visible, ranges) = (&self.visible, &self.geometry.ranges);
         let input = DrawInput { objects: &self.objects, changed: &changed, ranges, visible, views: &views };
         let draw_lists = self.draws.update(wanted, &input, |view| match view {
             ViewKind::Camera => Distance::from_camera(&camera),
-            ViewKind::DirectionalLight(light) => Distance::Along(-lights.to_sun(light)),
-            ViewKind::LocalLight(light, _) => {
-                Distance::From(lights.lamps.get(light as usize).copied().flatten().map_or(DVec3::ZERO, |lamp| lamp.position))
-            }
+            ViewKind::DirectionalLight(light) | ViewKind::Cascade(CascadeView { light, .. }) => Distance::Along(-lights.to_sun(light)),
+            ViewKind::PointLight(light, _) => Distance::From(lights.point(light).map_or(DVec3::ZERO, |lamp| lamp.position)),
+            ViewKind::SpotLight(light) => Distance::From(lights.spot(light).map_or(DVec3::ZERO, |lamp| lamp.position)),
         });
         let view_bytes = |(view, sun): (_, &Option<SunView>)| {
             let table = sun.as_ref().map_or_else(|| request::view_table(view, &camera, &lights), |sun| sun.table);
@@ -103,7 +105,10 @@ impl Publisher {
         self.set("camera", &[camera.table()]);
         self.set("environment", &[environment]);
         self.set("directional_lights", &lights.directional_rows(request.views, &suns));
+        self.set("cascades", &cascades::rows(request.views, &suns, &camera, solid));
         self.set("local_lights", &lights.local_rows());
+        self.set("point_lights", &lights.point_rows());
+        self.set("spot_lights", &lights.spot_rows());
         self.set("rectangle_lights", &rectangles);
         if !same_materials || !self.tables.contains_key("materials") {
             self.set("materials", &materials::rows(&materials));

@@ -1,6 +1,5 @@
 //! What is asked of [`super::publish`], and what it gives.
 
-use glam::DVec3;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{DrawFilter, PublishedScene, ViewKind, ViewRequest};
 
@@ -8,6 +7,7 @@ use super::cube;
 use super::layout::ViewTable;
 use super::lights::Lights;
 use super::projection::CameraView;
+use super::spot::SpotView;
 use super::sun::{self, SunView};
 use crate::world::Aabb;
 
@@ -51,36 +51,57 @@ pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights) -> Vec<Diagno
         Diagnostic::error("publish::unknown-light", format!("a view asks for {kind} light {index}, and the scene has {count}"))
             .hint("count loops with the scene's counts, or let the pass stand only if the scene `has` such lights")
     };
-    kinds
-        .into_iter()
-        .filter_map(|kind| match kind {
-            ViewKind::DirectionalLight(light) if light as usize >= lights.suns.len() => {
-                Some(unknown("directional", light, lights.suns.len()))
+    let [cubes, maps] = lights.cubes_and_maps();
+    let mut problems: Vec<Diagnostic> = kinds
+        .iter()
+        .filter_map(|kind| {
+            let (name, light, count) = match *kind {
+                ViewKind::Camera => return None,
+                ViewKind::DirectionalLight(light) => ("directional", light, lights.suns.len()),
+                ViewKind::Cascade(cascade) => ("directional", cascade.light, lights.suns.len()),
+                ViewKind::PointLight(light, _) => ("point", light, cubes),
+                ViewKind::SpotLight(light) => ("spot", light, maps),
+            };
+            match *kind {
+                _ if light as usize >= count => Some(unknown(name, light, count)),
+                ViewKind::PointLight(light, face) if face > 5 => Some(Diagnostic::error(
+                    "publish::unknown-face",
+                    format!("a view asks for face {face} of point light {light}; a cube has the faces 0 to 5"),
+                )),
+                _ => None,
             }
-            ViewKind::LocalLight(light, _) if light as usize >= lights.lamps.len() => Some(unknown("local", light, lights.lamps.len())),
-            ViewKind::LocalLight(light, face) if face > 5 => Some(Diagnostic::error(
-                "publish::unknown-face",
-                format!("a view asks for face {face} of local light {light}; a cube has the faces 0 to 5"),
-            )),
-            _ => None,
         })
-        .collect()
+        .collect();
+    let cascade = |view: &ViewRequest| match view.kind {
+        ViewKind::Cascade(cascade) => Some((cascade.split, view.width, view.height)),
+        _ => None,
+    };
+    let mut cascades = request.views.iter().filter_map(cascade);
+    if let Some(first) = cascades.next()
+        && cascades.any(|other| other != first)
+    {
+        let text = "views ask for cascades that are parted differently, or with maps of different sizes; the table `cascades` has one kind";
+        problems.push(Diagnostic::error("publish::mixed-cascades", text).hint("give the cascades of all lights the same numbers"));
+    }
+    problems
 }
 
 /// The view of a directional light, fitted; `None` if it is another one's.
 pub(super) fn sun_view(view: &ViewRequest, camera: &CameraView, lights: &Lights, bounds: Option<Aabb>) -> Option<SunView> {
-    let ViewKind::DirectionalLight(light) = view.kind else { return None };
-    Some(sun::fit(lights.to_sun(light), camera, bounds, [view.width, view.height]))
+    let texels = [view.width, view.height];
+    match view.kind {
+        ViewKind::DirectionalLight(light) => Some(sun::fit(lights.to_sun(light), camera, bounds, texels)),
+        ViewKind::Cascade(cascade) => Some(sun::fit_cascade(lights.to_sun(cascade.light), camera, bounds, cascade, texels)),
+        ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::SpotLight(_) => None,
+    }
 }
 
-/// The table of a view that is no directional light's. Lights that are not there look down from the origin.
+/// The table of a view that is no directional light's; zero where a light is not there, since nothing is drawn then.
 pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights) -> ViewTable {
-    match view.kind {
-        ViewKind::Camera | ViewKind::DirectionalLight(_) => camera.view(),
-        ViewKind::LocalLight(light, face) => {
-            let lamp = lights.lamps.get(light as usize).copied().flatten();
-            let (position, planes) = lamp.map_or((DVec3::ZERO, [0.01, 1.0]), |lamp| (lamp.position, lamp.reach.planes));
-            cube::face_view(position, planes, face)
-        }
-    }
+    let table = match view.kind {
+        ViewKind::Camera | ViewKind::DirectionalLight(_) | ViewKind::Cascade(_) => Some(camera.view()),
+        ViewKind::PointLight(light, face) => lights.point(light).map(|lamp| cube::face_view(lamp.position, lamp.reach.planes, face)),
+        ViewKind::SpotLight(light) => lights.spot(light).map(|lamp| SpotView::of(&lamp).table),
+    };
+    table.unwrap_or_else(bytemuck::Zeroable::zeroed)
 }

@@ -7,7 +7,10 @@ use luminaire_graph::published::{
     Collection, PublishedSchema, TableKind, TableMember, TableSchema, VertexAttribute, VertexFormat, VertexSchema,
 };
 
-use super::layout::{CameraTable, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, RectangleRow, TEXTURES, ViewTable};
+use super::layout::{
+    CameraTable, CascadeRow, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, PointRow, RectangleRow, SpotRow,
+    TEXTURES, ViewTable,
+};
 use crate::asset::Vertex;
 
 /// Textures of a material, in the order of the bits of `uv_sets` and the rows of `uv_transforms`.
@@ -94,7 +97,15 @@ pub fn schema() -> PublishedSchema {
             illuminance: "vec3<f32>",
             shadow_depth_range: "f32",
             shadow_from_world: "mat4x4<f32>",
+            cascades: "u32",
         }),
+    );
+    add(
+        "cascades",
+        TableKind::Storage,
+        "Shadow views of directional lights, each fitted to a part of what the camera sees.",
+        size_of::<CascadeRow>(),
+        members!(CascadeRow { shadow_from_world: "mat4x4<f32>", texel_size: "f32", depth_range: "f32", end: "f32", fade_end: "f32" }),
     );
     add(
         "local_lights",
@@ -105,13 +116,26 @@ pub fn schema() -> PublishedSchema {
             position: "vec3<f32>",
             range: "f32",
             intensity: "vec3<f32>",
-            shadow_near: "f32",
+            reach: "f32",
             direction: "vec3<f32>",
-            shadow_far: "f32",
+            shadow: "i32",
             spot_scale: "f32",
             spot_offset: "f32",
-            reach: "f32",
         }),
+    );
+    add(
+        "point_lights",
+        TableKind::Storage,
+        "The shadow cubes of point lights, and of spots with a half angle beyond 67.8 degrees.",
+        size_of::<PointRow>(),
+        members!(PointRow { position: "vec3<f32>", near: "f32", far: "f32", light: "u32" }),
+    );
+    add(
+        "spot_lights",
+        TableKind::Storage,
+        "The shadow views of spot lights.",
+        size_of::<SpotRow>(),
+        members!(SpotRow { shadow_from_world: "mat4x4<f32>", near: "f32", far: "f32", half_width: "f32", light: "u32" }),
     );
     add(
         "rectangle_lights",
@@ -170,14 +194,10 @@ pub fn schema() -> PublishedSchema {
         material_samplers: TEXTURE_NAMES.map(|name| name.replace("_texture", "_sampler")).to_vec(),
         vertex: vertex_schema(),
         counts: COUNT_NAMES.map(str::to_owned).to_vec(),
-        collections: [
-            ("directional_lights", "directional_light"),
-            ("local_lights", "local_light"),
-            ("rectangle_lights", "rectangle_light"),
-        ]
-        .map(|(table, element)| (table.to_owned(), Collection { table: table.to_owned(), element: element.to_owned() }))
-        .into_iter()
-        .collect(),
+        collections: ["directional_lights", "point_lights", "spot_lights", "local_lights", "rectangle_lights"]
+            .map(|table| (table.to_owned(), Collection { table: table.to_owned(), element: table.trim_end_matches('s').to_owned() }))
+            .into_iter()
+            .collect(),
     }
 }
 
@@ -237,8 +257,11 @@ mod tests {
             ("camera", 288),
             ("view", 96),
             ("environment", 32),
-            ("directional_lights", 96),
+            ("directional_lights", 112),
+            ("cascades", 80),
             ("local_lights", 64),
+            ("point_lights", 32),
+            ("spot_lights", 80),
             ("rectangle_lights", 64),
             ("instances", 128),
             ("instance_slots", 4),

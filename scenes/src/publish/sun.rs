@@ -4,15 +4,21 @@
 //! scene itself as the light sees it. The sphere's radius is rounded up to a quarter of an octave, and the square's middle
 //! to whole texels, so that a moving camera shifts the map by whole texels and shadow edges stand still; only where the
 //! rounded radius steps does the map change its scale. Depth covers the whole scene along the light, so every caster is in it.
-//! Accepted downside: a sphere wastes a good part of the map, and one map has no cascades.
+//! A cascade is the same for a part of the frustum ([`super::cascades`]). Accepted downside: a sphere wastes a good part of the map.
 
 use glam::{DMat4, DVec3, DVec4};
+use luminaire_graph::published::CascadeView;
 
+use super::cascades::{self, Depths};
 use super::frustum::Frustum;
 use super::layout::ViewTable;
 use super::projection::{CameraView, columns, single, vector};
 use super::reach::round_up;
 use crate::world::{Aabb, look_at};
+
+/// Texels around a cascade's content, on each side: half of one for the rounding of its middle, three and a half for filters, so that what
+/// stands in a part of the frustum is filtered within the map of that part.
+const CASCADE_MARGIN: f64 = 4.0;
 
 /// A fitted view.
 #[derive(Debug, Clone)]
@@ -26,22 +32,42 @@ pub(super) struct SunView {
     pub(super) casters: Frustum,
 }
 
-/// Fits a map of so many texels. `to_light` has unit length.
+/// Fits a map of so many texels to all that the camera sees. `to_light` has unit length.
 pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, texels: [u32; 2]) -> SunView {
+    let seen = bounds.and_then(|bounds| cascades::seen(camera, bounds));
+    // Rounding moves the middle by up to half a texel.
+    fit_part(to_light, camera, bounds, seen, texels, 1.0, true)
+}
+
+/// Fits a map of so many texels to a part of what the camera sees.
+pub(super) fn fit_cascade(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, cascade: CascadeView, texels: [u32; 2]) -> SunView {
+    let part = bounds.and_then(|bounds| cascades::part(camera, bounds, cascade));
+    fit_part(to_light, camera, bounds, part, texels, CASCADE_MARGIN, cascade.split.snap)
+}
+
+/// Without a part, or where that is larger, all of the scene is in the map. `margin` is in texels.
+fn fit_part(
+    to_light: DVec3,
+    camera: &CameraView,
+    bounds: Option<Aabb>,
+    part: Option<Depths>,
+    texels: [u32; 2],
+    margin: f64,
+    snap: bool,
+) -> SunView {
     let (right, up, back) = look_at(-to_light);
     let scene = LightBounds::of(bounds, right, up, back);
     let (mut middle, mut half) = (scene.middle, scene.half);
-    if let Some((center, radius)) = bounds.and_then(|bounds| frustum_sphere(camera, bounds)) {
+    if let Some((center, radius)) = part.map(|part| frustum_sphere(camera, part)) {
         let radius = round_up(radius);
         if radius < half {
             (middle, half) = ([center.dot(right), center.dot(up)], radius);
         }
     }
-    // Two texels more than the content, since rounding moves the middle by up to half of one.
     let texels = texels.map(|count| f64::from(count.max(4)));
-    let size = texels.map(|count| 2.0 * half / (count - 2.0));
+    let size = texels.map(|count| 2.0 * half / (count - 2.0 * margin.min(count * 0.25)));
     let half = [0, 1].map(|axis| size[axis] * texels[axis] * 0.5);
-    let middle = [0, 1].map(|axis| (middle[axis] / size[axis]).round() * size[axis]);
+    let middle = if snap { [0, 1].map(|axis| (middle[axis] / size[axis]).round() * size[axis]) } else { middle };
 
     let range = scene.nearest - scene.farthest;
     let projection_from_world = DMat4::from_cols(
@@ -87,17 +113,8 @@ impl LightBounds {
     }
 }
 
-/// The smallest sphere around the frustum between its near plane and the farthest corner of the bounds; `None` if the scene
-/// lies behind the camera.
-fn frustum_sphere(camera: &CameraView, bounds: Aabb) -> Option<(DVec3, f64)> {
-    let forward = camera.forward();
-    let depth = |corner: glam::Vec3| (corner.as_dvec3() - camera.pose.position).dot(forward);
-    let near = camera.near;
-    let far = bounds.corners().into_iter().map(depth).fold(f64::NEG_INFINITY, f64::max);
-    let far = camera.far().map_or(far, |limit| limit.min(far));
-    if far <= near {
-        return None;
-    }
+/// The smallest sphere around a part of the frustum.
+fn frustum_sphere(camera: &CameraView, Depths { near, far }: Depths) -> (DVec3, f64) {
     let diagonal = camera.half[0].hypot(camera.half[1]);
     let (along, radius) = match camera.far() {
         // Equally far from the corners of both ends, unless the far end alone decides.
@@ -108,7 +125,7 @@ fn frustum_sphere(camera: &CameraView, bounds: Aabb) -> Option<(DVec3, f64)> {
         }
         Some(_) => (0.5 * (near + far), diagonal.hypot(0.5 * (far - near))),
     };
-    Some((camera.pose.position + forward * along, radius))
+    (camera.pose.position + camera.forward() * along, radius)
 }
 
 #[cfg(test)]

@@ -4,13 +4,13 @@ use bevy_ecs::prelude::{Entity, World};
 use bytemuck::Pod;
 use glam::{Affine3A, Mat4, Quat, Vec3};
 use luminaire_graph::diagnostic::Diagnostic;
-use luminaire_graph::published::{DrawBatch, DrawFilter, TableKind, ViewKind, ViewRequest};
+use luminaire_graph::published::{CascadeSplit, CascadeView, DrawBatch, DrawFilter, Positive, TableKind, ViewKind, ViewRequest};
 
 use super::*;
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
 use crate::world::{
-    Camera, ChildOf, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world,
+    Camera, ChildOf, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world,
     set_translation,
 };
 
@@ -100,7 +100,7 @@ fn solid_objects_share_a_call_per_material_mesh_and_orientation() {
 fn blended_objects_go_back_to_front_from_their_view() {
     let mut world = crowd();
     let lists =
-        [(DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, ViewKind::LocalLight(0, 3)), (DrawFilter::Opaque, ViewKind::Camera)];
+        [(DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, ViewKind::PointLight(0, 3)), (DrawFilter::Opaque, ViewKind::Camera)];
     let published = publish(&mut world, &request(&[], &lists)).unwrap();
     let order =
         |list: usize| -> Vec<u32> { published.scene.draw_lists[list].batches.iter().flat_map(|batch| slots(&published, batch)).collect() };
@@ -148,11 +148,11 @@ fn a_light_without_a_shadow_view_has_zeros_there() {
 #[test]
 fn cube_views_reach_what_their_light_shines_on() {
     let mut world = crowd();
-    let views: Vec<ViewRequest> = (0..6).map(|face| ViewRequest { kind: ViewKind::LocalLight(0, face), width: 64, height: 64 }).collect();
+    let views: Vec<ViewRequest> = (0..6).map(|face| ViewRequest { kind: ViewKind::PointLight(0, face), width: 64, height: 64 }).collect();
     let published = publish(&mut world, &request(&views, &[])).unwrap();
-    let lamps: Vec<LocalRow> = table_rows(&published, "local_lights");
+    let lamps: Vec<PointRow> = table_rows(&published, "point_lights");
     let down: &ViewTable = bytemuck::from_bytes(&published.scene.views[3]);
-    assert_eq!((lamps[0].shadow_near, lamps[0].shadow_far), (down.near, down.far));
+    assert_eq!((lamps[0].near, lamps[0].far, lamps[0].light), (down.near, down.far, 0));
     let at_origin = Mat4::from_cols_array_2d(&down.projection_from_world).project_point3(Vec3::ZERO);
     assert!(at_origin.x.abs() < 1e-5 && at_origin.y.abs() < 1e-5 && (0.0..1.0).contains(&at_origin.z));
 }
@@ -207,13 +207,13 @@ fn degenerate_worlds_publish_finite_numbers() {
         Affine3A::from_scale(Vec3::splat(f32::NAN)),
         Affine3A::from_translation(Vec3::splat(f32::INFINITY)),
     ];
-    let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::LocalLight(1, 5), width: 8, height: 8 }];
+    let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::PointLight(1, 5), width: 8, height: 8 }];
     for transform in transforms {
         let mut world = stage();
         let lamp = LocalLight { color: Vec3::ONE, intensity: f32::INFINITY, range: Some(f32::NAN), cone: None };
         world.spawn((Transform(transform), lamp));
         world.spawn((Transform(transform), MeshInstance { mesh: 0, material: 3 }));
-        let published = publish(&mut world, &request(&views, &[(DrawFilter::All, ViewKind::LocalLight(1, 0))])).unwrap();
+        let published = publish(&mut world, &request(&views, &[(DrawFilter::All, ViewKind::PointLight(1, 0))])).unwrap();
         for (name, table) in published.scene.tables.iter().filter(|(name, _)| *name != "instance_slots") {
             let bytes = table.bytes();
             let numbers: &[f32] = bytemuck::cast_slice(&bytes);
@@ -226,11 +226,58 @@ fn degenerate_worlds_publish_finite_numbers() {
     }
 }
 
+/// A spot from above, with a half angle of 0.5.
+fn spot(at: Vec3) -> (Transform, LocalLight) {
+    let cone = Some(Cone { inner: 0.2, outer: 0.5 });
+    let down = Affine3A::from_rotation_translation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2), at);
+    (Transform(down), LocalLight { color: Vec3::ONE, intensity: 10.0, range: None, cone })
+}
+
+#[test]
+fn a_spot_has_one_map_over_its_cone() {
+    let mut world = crowd();
+    world.spawn(spot(Vec3::new(0.0, 4.0, 0.0)));
+    let views = [ViewRequest { kind: ViewKind::SpotLight(0), width: 64, height: 64 }];
+    let published = publish(&mut world, &request(&views, &[(DrawFilter::Opaque, ViewKind::SpotLight(0))])).unwrap();
+    let view: &ViewTable = bytemuck::from_bytes(&published.scene.views[0]);
+    let lamps: Vec<LocalRow> = table_rows(&published, "local_lights");
+    let row = table_rows::<SpotRow>(&published, "spot_lights")[0];
+    assert_eq!(lamps.iter().map(|lamp| lamp.shadow).collect::<Vec<_>>(), [0, -1]);
+    assert_eq!((row.shadow_from_world, row.near, row.far, row.light), (view.projection_from_world, view.near, view.far, 1));
+    let matrix = Mat4::from_cols_array_2d(&view.projection_from_world);
+    let rim = matrix.project_point3(Vec3::new(0.0, 2.0, 2.0 * 0.5_f32.tan()));
+    assert!(rim.x.abs() < 1e-4 && rim.y.abs() < 1.0 && rim.y.abs() > 0.95, "the cone's rim is near the map's edge: {rim}");
+    assert!((row.half_width * 1.0 - 0.5_f32.tan() / rim.y.abs()).abs() < 1e-3);
+}
+
+#[test]
+fn cascades_are_rows_by_light_and_index() {
+    let mut world = crowd();
+    world.spawn((Transform(Affine3A::from_rotation_x(-1.0)), DirectionalLight { color: Vec3::ONE, illuminance: 1.0 }));
+    let split = CascadeSplit { count: 3, distance: Positive::new(8.0), lambda: Positive::new(0.5), snap: true };
+    let view = |light, index| ViewRequest { kind: ViewKind::Cascade(CascadeView { light, index, split }), width: 256, height: 256 };
+    let views = [view(1, 0), view(1, 1), view(1, 2), view(0, 1)];
+    let published = publish(&mut world, &request(&views, &[])).unwrap();
+    let rows: Vec<CascadeRow> = table_rows(&published, "cascades");
+    let suns: Vec<DirectionalRow> = table_rows(&published, "directional_lights");
+    assert_eq!((rows.len(), suns[0].cascades, suns[1].cascades), (6, 3, 3));
+    assert_eq!((rows[0].texel_size, rows[2].texel_size), (0.0, 0.0), "views that nobody asked for");
+    for (row, view) in [(3, 0), (4, 1), (5, 2), (1, 3)] {
+        let table: &ViewTable = bytemuck::from_bytes(&published.scene.views[view]);
+        assert_eq!(rows[row].shadow_from_world, table.projection_from_world);
+    }
+    assert!(rows[3].texel_size <= rows[4].texel_size && rows[3].end < rows[4].end && rows[5].end <= 8.0);
+    let other = CascadeSplit { count: 2, ..split };
+    let mixed = [view(0, 0), ViewRequest { kind: ViewKind::Cascade(CascadeView { light: 1, index: 0, split: other }), ..view(1, 0) }];
+    let problems = publish(&mut world, &request(&mixed, &[])).unwrap_err();
+    assert_eq!(problems.iter().map(|problem| problem.code).collect::<Vec<_>>(), ["publish::mixed-cascades"]);
+}
+
 #[test]
 fn what_is_not_there_is_reported_at_once() {
     let views =
-        [ViewRequest { kind: ViewKind::DirectionalLight(3), ..SUN_VIEW }, ViewRequest { kind: ViewKind::LocalLight(0, 6), ..SUN_VIEW }];
-    let wanted = PublishRequest { camera: Some("mian"), ..request(&views, &[(DrawFilter::All, ViewKind::LocalLight(9, 0))]) };
+        [ViewRequest { kind: ViewKind::DirectionalLight(3), ..SUN_VIEW }, ViewRequest { kind: ViewKind::PointLight(0, 6), ..SUN_VIEW }];
+    let wanted = PublishRequest { camera: Some("mian"), ..request(&views, &[(DrawFilter::All, ViewKind::PointLight(9, 0))]) };
     let problems = publish(&mut stage(), &wanted).unwrap_err();
     let codes: Vec<&str> = problems.iter().map(|problem| problem.code).collect();
     assert_eq!(codes, ["publish::unknown-light", "publish::unknown-face", "publish::unknown-light", "world::unknown-camera"]);
@@ -249,7 +296,7 @@ fn counts_are_rows_of_lights_and_instances_of_surfaces() {
 #[test]
 fn what_is_hidden_keeps_its_rows_and_neither_draws_nor_shines() {
     let mut world = crowd();
-    let faces = [2, 3].map(|face| (DrawFilter::All, ViewKind::LocalLight(0, face)));
+    let faces = [2, 3].map(|face| (DrawFilter::All, ViewKind::PointLight(0, face)));
     let lists = [(DrawFilter::All, ViewKind::Camera), faces[0], faces[1]];
     let wanted = request(&[], &lists);
     let mut publisher = Publisher::default();
@@ -350,16 +397,28 @@ mod memory {
         #[test]
         fn leaves_no_trace(steps in prop::collection::vec(prop::collection::vec((0_u8..18, 0_usize..40, prop::array::uniform3(-6.0_f32..6.0)), 0..6), 1..14)) {
             let mut world = crowd();
-            let lamp = |face| ViewKind::LocalLight(0, face);
+            let downwards = spot(Vec3::new(0.0, 4.0, 0.0));
+            let lit = world.spawn(downwards).id();
+            let split = CascadeSplit { count: 2, distance: Positive::new(9.0), lambda: Positive::new(0.5), snap: true };
+            let cascades = [0, 1].map(|index| ViewKind::Cascade(CascadeView { light: 0, index, split }));
+            let lamp = |face| ViewKind::PointLight(0, face);
             let mut lists: Vec<(DrawFilter, ViewKind)> = (0..6).map(|face| (DrawFilter::Opaque, lamp(face))).collect();
             lists.extend((0..6).map(|face| (DrawFilter::Masked, lamp(face))));
             let views = [(DrawFilter::Solid, ViewKind::Camera), (DrawFilter::Opaque, ViewKind::DirectionalLight(0)), (DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, lamp(2))];
             lists.extend(views);
-            let wanted = request(&[CAMERA_VIEW, SUN_VIEW], &lists);
+            lists.extend([ViewKind::SpotLight(0), cascades[0], cascades[1]].map(|view| (DrawFilter::Opaque, view)));
+            let maps = cascades.map(|kind| ViewRequest { kind, ..SUN_VIEW });
+            let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::SpotLight(0), ..SUN_VIEW }, maps[0], maps[1]];
+            let wanted = request(&views, &lists);
             let (mut publisher, mut things) = (Publisher::default(), Vec::new());
             for changes in steps {
                 for entry in changes {
                     change(&mut world, &mut things, entry);
+                    if entry.0 == 15 {
+                        let [x, y, z] = entry.2;
+                        let turned = Affine3A::from_rotation_translation(Quat::from_rotation_x(x), Vec3::new(x, y, z));
+                        *world.get_mut::<Transform>(lit).unwrap() = Transform(turned);
+                    }
                 }
                 let kept = publisher.publish(&mut world, &wanted).unwrap().scene;
                 let fresh = publish(&mut world, &wanted).unwrap().scene;

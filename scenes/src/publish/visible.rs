@@ -1,4 +1,4 @@
-//! Which objects each view sees: the camera and directional lights by their frusta, the faces of a lamp's cube as its [`Casters`].
+//! Which objects each view sees: the camera, directional lights and spots by their frusta, the faces of a lamp's cube as its [`Casters`].
 //!
 //! Kept from frame to frame: a view that stands still tests objects that changed, one that moves tests all.
 
@@ -19,7 +19,7 @@ pub(super) struct Visible {
     in_view: BTreeMap<ViewKind, InView>,
 }
 
-/// What a camera or a directional light sees.
+/// What a camera, a directional light or a spot sees.
 #[derive(Debug, Default)]
 struct InView {
     /// Of a light whose maps have several sizes there are several: it sees what any of them holds.
@@ -40,9 +40,9 @@ impl Visible {
         changed: &Changed,
     ) -> BTreeSet<ViewKind> {
         let faces = self.casters.update(world, wanted.iter().copied(), lights, objects, changed);
-        let mut others: BTreeSet<ViewKind> = faces.into_iter().map(|(lamp, face)| ViewKind::LocalLight(lamp, face)).collect();
+        let mut others: BTreeSet<ViewKind> = faces.into_iter().map(|(lamp, face)| ViewKind::PointLight(lamp, face)).collect();
         self.in_view.retain(|view, _| wanted.contains(view));
-        for view in wanted.iter().filter(|view| !matches!(view, ViewKind::LocalLight(..))) {
+        for view in wanted.iter().filter(|view| !matches!(view, ViewKind::PointLight(..))) {
             let frusta = frusta(*view);
             let known = self.in_view.entry(*view).or_default();
             let different = if known.frusta == frusta {
@@ -59,10 +59,8 @@ impl Visible {
     /// Whether a view sees the object of a slot.
     pub(super) fn sees(&self, view: ViewKind, slot: u32) -> bool {
         match view {
-            ViewKind::LocalLight(lamp, face) => self.casters.sees(lamp, face, slot),
-            ViewKind::Camera | ViewKind::DirectionalLight(_) => {
-                self.in_view.get(&view).and_then(|known| known.seen.get(slot as usize)).copied().unwrap_or(false)
-            }
+            ViewKind::PointLight(lamp, face) => self.casters.sees(lamp, face, slot),
+            _ => self.in_view.get(&view).and_then(|known| known.seen.get(slot as usize)).copied().unwrap_or(false),
         }
     }
 }

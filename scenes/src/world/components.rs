@@ -60,6 +60,17 @@ pub struct Cone {
     pub outer: f32,
 }
 
+impl Cone {
+    /// The widest half angle for one shadow map, the arc tangent of the square root of 6: beyond, the texels in the middle of a map as large
+    /// as six faces of a cube are coarser than those of the cube.
+    pub const WIDEST_MAP: f32 = 1.183_199_6;
+
+    /// Whether its shadows need a cube. What is no number counts as wide.
+    pub fn is_wide(self) -> bool {
+        !(self.outer.abs() <= Cone::WIDEST_MAP)
+    }
+}
+
 /// Light from a rectangle around the entity's origin that faces along its -Z. The mesh of the same entity shows it, or that of its parent.
 /// It is stretched and mirrored with what shows it.
 #[derive(Component, Debug, Clone, Copy, PartialEq)]
@@ -155,6 +166,16 @@ pub struct RectangleSlot(pub u32);
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[component(on_insert = take::<LocalSlot>, on_discard = give_back::<LocalSlot>)]
 pub struct LocalSlot(pub u32);
+
+/// Row in the table `point_lights` of a [`LocalLight`] whose shadows need a cube: point lights, and spots with a [wide](Cone::is_wide) cone.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<PointSlot>, on_discard = give_back::<PointSlot>)]
+pub struct PointSlot(pub u32);
+
+/// Row in the table `spot_lights` of a [`LocalLight`] whose shadows need one map.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<SpotSlot>, on_discard = give_back::<SpotSlot>)]
+pub struct SpotSlot(pub u32);
 
 /// Order of a [`Camera`] among cameras: the lowest is the default one.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]

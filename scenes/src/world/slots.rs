@@ -7,11 +7,12 @@ use std::collections::BTreeSet;
 use std::marker::PhantomData;
 
 use bevy_ecs::lifecycle::HookContext;
-use bevy_ecs::prelude::{Component, Entity, Resource, With, Without, World};
+use bevy_ecs::prelude::{Component, Entity, Has, Resource, With, Without, World};
 use bevy_ecs::world::DeferredWorld;
 
 use super::components::{
-    Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot, RectangleLight, RectangleSlot,
+    Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot, PointSlot, RectangleLight,
+    RectangleSlot, SpotSlot,
 };
 
 /// A component that holds a slot.
@@ -33,7 +34,7 @@ macro_rules! slot {
         }
     )*};
 }
-slot!(ObjectSlot, DirectionalSlot, LocalSlot, RectangleSlot, CameraSlot);
+slot!(ObjectSlot, DirectionalSlot, LocalSlot, PointSlot, SpotSlot, RectangleSlot, CameraSlot);
 
 /// Which slots nobody holds.
 #[derive(Resource)]
@@ -89,12 +90,39 @@ pub fn assign_slots(world: &mut World) {
     assign::<MeshInstance, ObjectSlot>(world);
     assign::<DirectionalLight, DirectionalSlot>(world);
     assign::<LocalLight, LocalSlot>(world);
+    assign_by_shadow(world);
     assign::<RectangleLight, RectangleSlot>(world);
     assign::<Camera, CameraSlot>(world);
 }
 
 fn assign<Kind: Component, Of: Slot>(world: &mut World) {
-    let mut waiting: Vec<Entity> = world.query_filtered::<Entity, (With<Kind>, Without<Of>)>().iter(world).collect();
+    let waiting = world.query_filtered::<Entity, (With<Kind>, Without<Of>)>().iter(world).collect();
+    give::<Of>(world, waiting);
+}
+
+/// Point and spot lights have another slot by what kind of shadow map they need, which follows a change of their cone.
+fn assign_by_shadow(world: &mut World) {
+    let (mut points, mut spots): (Vec<Entity>, Vec<Entity>) = (Vec::new(), Vec::new());
+    for (entity, light, is_point, is_spot) in world.query::<(Entity, &LocalLight, Has<PointSlot>, Has<SpotSlot>)>().iter(world) {
+        let cube = light.cone.is_none_or(|cone| cone.is_wide());
+        match (cube, is_point, is_spot) {
+            (true, true, false) | (false, false, true) => {}
+            (true, ..) => points.push(entity),
+            (false, ..) => spots.push(entity),
+        }
+    }
+    for entity in &points {
+        world.entity_mut(*entity).remove::<SpotSlot>();
+    }
+    for entity in &spots {
+        world.entity_mut(*entity).remove::<PointSlot>();
+    }
+    give::<PointSlot>(world, points);
+    give::<SpotSlot>(world, spots);
+}
+
+/// Gives each a slot of its own.
+fn give<Of: Slot>(world: &mut World, mut waiting: Vec<Entity>) {
     if waiting.is_empty() {
         return;
     }
@@ -113,7 +141,7 @@ pub(super) fn order(entity: Entity) -> (u32, u32) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::world::new_world;
+    use crate::world::{Cone, new_world};
 
     fn spawn(world: &mut World) -> Entity {
         let entity = world.spawn(MeshInstance { mesh: 0, material: 0 }).id();
@@ -134,6 +162,22 @@ mod tests {
         let d = spawn(&mut world);
         let e = spawn(&mut world);
         assert_eq!([slot(&world, a), slot(&world, c), slot(&world, d), slot(&world, e)], [0, 2, 1, 3]);
+    }
+
+    #[test]
+    fn a_light_has_the_slot_of_its_kind_of_shadow() {
+        let mut world = new_world();
+        let cone = |outer: f32| Some(Cone { inner: 0.0, outer });
+        let [a, b, c, d] = [None, cone(0.5), cone(1.5), cone(1.0)]
+            .map(|cone| world.spawn(LocalLight { color: glam::Vec3::ONE, intensity: 1.0, range: None, cone }).id());
+        let slots =
+            |world: &World, entity| (world.get::<PointSlot>(entity).map(|slot| slot.0), world.get::<SpotSlot>(entity).map(|slot| slot.0));
+        assign_slots(&mut world);
+        assert_eq!([a, b, c, d].map(|entity| slots(&world, entity)), [(Some(0), None), (None, Some(0)), (Some(1), None), (None, Some(1))]);
+        world.get_mut::<LocalLight>(b).unwrap().cone = cone(f32::NAN);
+        world.get_mut::<LocalLight>(a).unwrap().cone = cone(0.1);
+        assign_slots(&mut world);
+        assert_eq!([a, b, c, d].map(|entity| slots(&world, entity)), [(None, Some(0)), (Some(0), None), (Some(1), None), (None, Some(1))]);
     }
 
     #[test]

@@ -1,13 +1,14 @@
 //! Every kind of change.
 //!
-//! Two lamps stand twenty metres apart and reach three metres, a spot farther away reaches four. A box stands below each of the first
-//! two and is seen by the face that looks down (3), a candle without a range stands alone and ends where it fades, another one between them out of reach, a cut-out leaf and a blended pane below the
-//! first lamp. The sun sees everything. Objects have slots in the order in which they stand here.
+//! Two lamps stand twenty metres apart and reach three metres, two spots farther away reach four. A box stands below each of the first
+//! two and is seen by the face that looks down (3), a candle without a range stands alone and ends where it fades, another one between them
+//! out of reach, a cut-out leaf and a blended pane below the first lamp. The cascades of the sun see everything. Objects have slots in the
+//! order in which they stand here.
 
-use glam::Vec3;
+use glam::{Affine3A, Vec3};
 use libtest_mimic::Failed;
 use luminaire::scenes::asset::AlphaMode;
-use luminaire::scenes::world::{Camera, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, World, find_by_name};
+use luminaire::scenes::world::{Camera, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, Transform, World, find_by_name};
 
 use super::{Change, check, edit, go_to, place, take_away};
 
@@ -24,6 +25,7 @@ const SCENE: &str = "(
         \"first\": Point(candela: 20, position: (-10, 2, 0), range: 3),
         \"second\": Point(candela: 20, position: (10, 2, 0), range: 3),
         \"spot\": Spot(candela: 20, position: (0, 2, -30), direction: (0, -1, 0), inner: 20, outer: 40, range: 4),
+        \"other spot\": Spot(candela: 20, position: (-20, 2, -30), direction: (0, -1, 0.3), inner: 20, outer: 40, range: 4),
         \"candle\": Point(candela: 0.01, position: (0, 2, 30)),
     },
     objects: {
@@ -60,6 +62,17 @@ const CHANGES: &[Change] = &[
     ("the strength of a candle that ends where it fades", |world| edit(world, "candle", |lamp: &mut LocalLight| lamp.intensity = 0.0101)),
     ("the place of a lamp", |world| place(world, "second", [10.0, 2.1, 0.0])),
     ("the cone of a spot", |world| edit(world, "spot", |lamp: &mut LocalLight| lamp.cone = Some(Cone { inner: 0.1, outer: 0.5 }))),
+    ("the color of a spot", |world| edit(world, "spot", |lamp: &mut LocalLight| lamp.color = Vec3::new(0.5, 1.0, 1.0))),
+    ("a spot that turns", |world| turn(world, "spot", 0.1)),
+    ("a spot that gets too wide for a map", |world| {
+        edit(world, "spot", |lamp: &mut LocalLight| lamp.cone = Some(Cone { inner: 0.1, outer: 1.3 }))
+    }),
+    ("a spot that gets narrow again", |world| {
+        edit(world, "spot", |lamp: &mut LocalLight| lamp.cone = Some(Cone { inner: 0.1, outer: 0.5 }))
+    }),
+    ("a box into the light of a spot", |world| place(world, "below second", [0.0, 0.0, -30.2])),
+    ("a box that moves in the light of a spot", |world| place(world, "below second", [0.1, 0.0, -30.2])),
+    ("a box out of the light of a spot", |world| place(world, "below second", [10.0, 0.0, 0.0])),
     ("a box that a lamp reaches", |world| place(world, "below first", [-10.1, 0.0, 0.0])),
     ("a box that no lamp reaches", |world| place(world, "between", [1.0, 0.0, 0.0])),
     ("a leaf that a lamp reaches", |world| place(world, "leaf", [-10.1, 0.8, 0.0])),
@@ -94,6 +107,10 @@ fn material(world: &mut World, name: &str, change: impl Fn(&mut luminaire::scene
     let found = materials.0.iter_mut().find(|material| material.name == name).ok_or("no such material")?;
     change(found);
     Ok(())
+}
+
+fn turn(world: &mut World, name: &str, angle: f32) -> Result<(), Failed> {
+    edit(world, name, |transform: &mut Transform| transform.0 *= Affine3A::from_rotation_x(angle))
 }
 
 fn hide(world: &mut World, name: &str) -> Result<(), Failed> {

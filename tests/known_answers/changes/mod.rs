@@ -7,6 +7,7 @@ mod eight_lamps;
 mod kinds;
 mod parts;
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 use std::path::Path;
 
@@ -30,7 +31,7 @@ type Change = (&'static str, fn(&mut World) -> Result<(), Failed>);
 fn check(name: &str, scene: &str, prepare: fn(&mut World), changes: &[Change]) -> Result<(), Failed> {
     let mut world = world(scene)?;
     prepare(&mut world);
-    let shot = Shot::pbr(48, &["color"]).set("shadowed_local_lights", 8).set("local_shadow_texels", 32).set("sun_shadow_texels", 64);
+    let shot = Shot::pbr(48, &["color"]).set("shadowed_point_lights", 8).set("local_shadow_texels", 32).set("sun_shadow_texels", 64);
     let mut session = shot.poisoned_session(&mut world)?;
     while !session.render_frame().map_err(shown)?.settled {}
     let mut text = String::new();
@@ -51,27 +52,28 @@ fn check(name: &str, scene: &str, prepare: fn(&mut World), changes: &[Change]) -
     if text == expected { Ok(()) } else { Err(format!("{} differs (LUMINAIRE_ACCEPT=1 accepts it):\n{text}", path.display()).into()) }
 }
 
-/// Names of passes; the faces of a lamp's cube by its number: `lamp 1 (0 1 2 3 4 5)`.
+/// Names of passes; the maps of a light together: `shadows of lamp 1 (0 1 2 3 4 5)` are the faces of its cube, `shadows of sun 0 (0 1 2)`
+/// its cascades.
 fn passes(ran: &[&str]) -> Vec<String> {
     let mut names: Vec<String> = Vec::new();
-    let mut lamps: Vec<(u32, Vec<u32>)> = Vec::new();
+    let mut maps: BTreeMap<(&str, u32), BTreeSet<u32>> = BTreeMap::new();
     for pass in ran {
-        let face = pass.strip_prefix("shadows.local[").and_then(|rest| rest.split_once(']')?.0.parse::<u32>().ok());
-        match face {
+        let numbers: Vec<u32> = pass.split(['[', ']']).filter_map(|part| part.parse().ok()).collect();
+        let map = match (pass.split('.').next(), numbers.as_slice()) {
+            (Some("point_shadows"), [face]) => Some((("lamp", face / 6), face % 6)),
+            (Some("spot_shadows"), [spot]) => Some((("spot", *spot), 0)),
+            (Some("sun_shadows"), [sun, cascade]) => Some((("sun", *sun), *cascade)),
+            _ => None,
+        };
+        match map {
             None => names.push((*pass).to_owned()),
-            Some(face) => match lamps.iter_mut().find(|(lamp, _)| *lamp == face / 6) {
-                Some((_, faces)) if faces.contains(&(face % 6)) => {}
-                Some((_, faces)) => faces.push(face % 6),
-                None => lamps.push((face / 6, vec![face % 6])),
-            },
+            Some((light, map)) => _ = maps.entry(light).or_default().insert(map),
         }
     }
-    lamps.sort_unstable();
-    let lamp = |(lamp, mut faces): (u32, Vec<u32>)| {
-        faces.sort_unstable();
-        format!("shadows of lamp {lamp} ({})", faces.iter().map(u32::to_string).collect::<Vec<_>>().join(" "))
+    let of_light = |((kind, light), maps): ((&str, u32), BTreeSet<u32>)| {
+        format!("shadows of {kind} {light} ({})", maps.iter().map(u32::to_string).collect::<Vec<_>>().join(" "))
     };
-    lamps.into_iter().map(lamp).chain(names).collect()
+    maps.into_iter().map(of_light).chain(names).collect()
 }
 
 fn place(world: &mut World, name: &str, at: [f32; 3]) -> Result<(), Failed> {

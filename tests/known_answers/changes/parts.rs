@@ -1,5 +1,5 @@
-//! Which published parts of a scene differ between two states, as text: `local_lights[1].intensity`, `view of local light 1, face 3`,
-//! `casters of local light 1, face 3: 0 4`.
+//! Which published parts of a scene differ between two states, as text: `local_lights[1].intensity`, `view of lamp 1`,
+//! `opaque of lamp 1 face 3: 0 4`.
 
 use std::collections::BTreeSet;
 
@@ -28,7 +28,7 @@ pub fn changed_parts(plan: &Plan, before: &PublishedScene, now: &PublishedScene)
     let mut views: Vec<String> = others.map(|(_, view)| view_name(view.kind)).collect();
     // All six faces of a lamp are told at once.
     for lamp in 0..8 {
-        let faces: Vec<String> = (0..6).map(|face| view_name(ViewKind::LocalLight(lamp, face))).collect();
+        let faces: Vec<String> = (0..6).map(|face| view_name(ViewKind::PointLight(lamp, face))).collect();
         if faces.iter().all(|face| views.contains(face)) {
             views.retain(|view| !faces.contains(view));
             views.push(format!("lamp {lamp}"));
@@ -78,6 +78,8 @@ fn view_name(view: ViewKind) -> String {
     match view {
         ViewKind::Camera => "camera".to_owned(),
         ViewKind::DirectionalLight(light) => format!("sun {light}"),
-        ViewKind::LocalLight(light, face) => format!("lamp {light} face {face}"),
+        ViewKind::Cascade(cascade) => format!("sun {} cascade {}", cascade.light, cascade.index),
+        ViewKind::PointLight(light, face) => format!("lamp {light} face {face}"),
+        ViewKind::SpotLight(light) => format!("spot {light}"),
     }
 }

@@ -30,8 +30,26 @@ pub enum ViewDoc {
     Camera,
     /// The orthographic shadow view of a directional light, by its index among them, fitted to the camera's frustum.
     DirectionalLight(Expr),
-    /// One cube face of a point or spot light: the light's index among them, and the face.
-    LocalLight(Expr, Expr),
+    /// The orthographic shadow view of a directional light, fitted to one of several parts of the camera's frustum.
+    Cascade {
+        /// Its index among directional lights.
+        light: Expr,
+        /// Which part: 0 is nearest to the camera.
+        index: Expr,
+        /// How many parts there are.
+        count: Expr,
+        /// Metres from the camera to where the last part ends, at most.
+        distance: Expr,
+        /// From 0, parts of equal depth, to 1, parts that double in depth.
+        lambda: Expr,
+        /// Whether a camera that moves shifts the view by whole texels.
+        #[serde(default)]
+        snap: Option<Expr>,
+    },
+    /// One cube face of a point light: the light's index among them, and the face.
+    PointLight(Expr, Expr),
+    /// The perspective shadow view of a spot light, by its index among them.
+    SpotLight(Expr),
 }
 
 /// Depth test and write of a Draw or Fullscreen.
