@@ -162,3 +162,19 @@ fn too_many_lights_have_a_message() {
     let Err(problems) = Harness::new(&input) else { panic!("20 million lights fit") };
     assert!(problems.contains("light_volumes.lists") && problems.contains("light_tiles.lists"), "{problems}");
 }
+
+/// A sun that moves: the sky's tables that know it, its own maps, and what they light. No other map, and not the surfaces.
+#[test]
+fn a_day_runs_sky_sun_shadows_and_lighting() {
+    let case = Case { sets: &[("sky", "physical")], ..PBR };
+    let mut harness = settled(&case);
+    harness.change(|input| match input {
+        Input::Table(name, _) => name == "directional_lights" || name == "cascades",
+        Input::View(view) => matches!(view.kind, ViewKind::Cascade(..)),
+        _ => false,
+    });
+    let ran = harness.frame();
+    let rest: Vec<&String> = ran.iter().filter(|name| !name.starts_with("sun_shadows.")).collect();
+    assert!(rest.len() < ran.len(), "the sun's maps are drawn: {ran:?}");
+    assert_eq!(rest, ["air.look", "air.gather", "light", "physical_sky", "compose", "transparent", "display.expose"]);
+}

@@ -8,6 +8,7 @@
 #import "shared/light_lists.wgsl"
 #import "shared/lights.wgsl"
 #import "shared/shadow.wgsl"
+#import "sky/light_table.wgsl"
 
 var<storage, read> light_lists: array<u32>;
 // Width of the image in pixels.
@@ -23,9 +24,13 @@ fn unblocked_light(point: SurfacePoint, light: Illumination) -> vec3<f32> {
     return surface_brdf(point, light.to_light) * light.illuminance * (cosine * environment.inverse_light_unit);
 }
 
-// The same from one directional light, shadow included.
+// The same from one directional light, shadow included. The first one is the sun, of which the air takes its part.
 fn directional_light(point: SurfacePoint, index: u32) -> vec3<f32> {
-    let light = unblocked_light(point, directional_illumination(index));
+    var illumination = directional_illumination(index);
+    if index == 0u {
+        illumination.illuminance *= sky_light_texel(SUN_HERE).rgb;
+    }
+    let light = unblocked_light(point, illumination);
     if all(light <= vec3<f32>(0.0)) {
         return vec3<f32>(0.0);
     }

@@ -46,18 +46,18 @@ fn point_texel(receiver: ShadowReceiver, texel: vec2<f32>) -> ShadowTexel {
     if beyond {
         let half_face = 0.5 * receiver.size;
         let near_by = clamp(texel, vec2<f32>(-half_face), vec2<f32>(receiver.size + half_face));
-        let direction = cube_direction(face, (near_by + 0.5) * (2.0 / receiver.size) - 1.0);
+        let direction = cube_direction(face, (near_by + 0.5 - map_shift()) * (2.0 / receiver.size) - 1.0);
         face = cube_face(direction);
         let there = into_cube_face(face, direction);
-        let place = (there.xy / there.z * 0.5 + 0.5) * receiver.size;
+        let place = (there.xy / there.z * 0.5 + 0.5) * receiver.size + map_shift();
         inside = clamp(floor(place), vec2<f32>(0.0), vec2<f32>(receiver.size - 1.0));
     }
     let depth = textureLoad(point_maps, vec2<i32>(inside), receiver.row * 6u + face, 0);
     var middle = inside + 0.5;
     var scale = 1.0 / receiver.texel_size;
     if beyond {
-        let ray = into_cube_face(receiver.face, cube_direction(face, middle * (2.0 / receiver.size) - 1.0));
-        middle = (ray.xy / ray.z * 0.5 + 0.5) * receiver.size;
+        let ray = into_cube_face(receiver.face, cube_direction(face, (middle - map_shift()) * (2.0 / receiver.size) - 1.0));
+        middle = (ray.xy / ray.z * 0.5 + 0.5) * receiver.size + map_shift();
         scale *= ray.z;
     }
     return ShadowTexel(middle, select(point_distance(receiver.row, depth) * scale, VERY_FAR, depth >= 1.0));

@@ -18,6 +18,7 @@
 //
 // Everything is in units of the size that a texel has at the receiver, so that nothing here depends on the scene's scale.
 
+#import "shared/map_shift.wgsl"
 #import "shared/math.wgsl"
 
 // How far the plane is followed for each texel to the side.
@@ -42,7 +43,7 @@ struct ShadowReceiver {
     face: u32,
     // Texels along an edge of the map.
     size: f32,
-    // Where it falls, texels from the upper left corner.
+    // Where it falls, texels from the upper left corner; on a map that is shifted, with the shift.
     place: vec2<f32>,
     // Distance from the light along the view's axis: from its near plane where rays are parallel, from the light elsewhere.
     distance: f32,
@@ -70,7 +71,7 @@ fn parallel_receiver(row: u32, size: f32, place: vec3<f32>, normal: vec3<f32>, t
     receiver.kind = CASCADE_MAP;
     receiver.row = row;
     receiver.size = size;
-    receiver.place = place.xy;
+    receiver.place = place.xy + map_shift();
     receiver.distance = place.z;
     receiver.texel_size = texel_size;
     receiver.gradient = -normal.xy / normal.z;
@@ -86,7 +87,7 @@ fn perspective_receiver(kind: u32, row: u32, size: f32, position: vec3<f32>, nor
     receiver.row = row;
     receiver.size = size;
     receiver.texel_size = 2.0 * half_width * position.z / size;
-    receiver.place = (position.xy / (position.z * half_width) * 0.5 + 0.5) * size;
+    receiver.place = (position.xy / (position.z * half_width) * 0.5 + 0.5) * size + map_shift();
     receiver.distance = position.z / receiver.texel_size;
     // Along the ray through a texel the plane is where dot(normal, x - position) = 0.
     receiver.gradient = normal.xy * (square(receiver.texel_size) / (position.z * dot(normal, position)));
