@@ -67,7 +67,7 @@ impl Cone {
 
     /// Whether its shadows need a cube. What is no number counts as wide.
     pub fn is_wide(self) -> bool {
-        !(self.outer.abs() <= Cone::WIDEST_MAP)
+        self.outer.is_nan() || self.outer.abs() > Cone::WIDEST_MAP
     }
 }
 
