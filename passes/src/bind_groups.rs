@@ -195,6 +195,7 @@ impl BindGroups {
     fn object(&mut self, gpu: &Gpu, plan: &Plan, binding: &Binding, memories: &mut Memories, scene: &SceneData) -> Option<Held> {
         match &binding.target {
             BindingTarget::UniformTable(name) | BindingTarget::StorageTable(name) => scene.table(name).map(Held::whole),
+            BindingTarget::SceneTexture(name) => scene.named_texture(name).cloned().map(Held::View),
             BindingTarget::View(index) => scene.view(*index).map(Held::whole),
             BindingTarget::TableRow(table, row) => scene.row(table, *row).map(Held::whole),
             BindingTarget::Batch => None,

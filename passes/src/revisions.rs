@@ -9,7 +9,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use luminaire_graph::plan::{DrawReads, Input, Plan};
-use luminaire_graph::published::{DrawBatch, PublishedGeometry, PublishedMaterials, PublishedScene, RowReads, Table};
+use luminaire_graph::published::{DrawBatch, PublishedGeometry, PublishedMaterials, PublishedScene, PublishedTexture, RowReads, Table};
+
+use crate::scene_data::same_texture;
 
 /// The content and revision of every input of the plan.
 #[derive(Debug, Clone, Default)]
@@ -37,6 +39,7 @@ enum Content {
     Nothing,
     Table(Table),
     Bytes(Vec<u8>),
+    Texture(Arc<PublishedTexture>),
     Draws(Shown),
 }
 
@@ -152,6 +155,7 @@ impl Revisions {
         let same = match (input, &content, before) {
             (Input::Table(_, reads), Content::Table(now), Content::Table(before)) => same_table(reads, now, before),
             (Input::Row(.., reads), Content::Bytes(now), Content::Bytes(before)) => reads.agree(now, before),
+            (_, Content::Texture(now), Content::Texture(before)) => same_texture(before, now),
             (_, Content::Bytes(now), Content::Bytes(before)) => now == before,
             (_, Content::Nothing, Content::Nothing) => true,
             _ => false,
@@ -166,6 +170,7 @@ impl Revisions {
                 let row = scene.tables.get(name).and_then(|table| table.row(*row as usize));
                 Content::Bytes(row.unwrap_or_default().to_vec())
             }
+            Input::Texture(name) => scene.textures.get(name).map_or(Content::Nothing, |texture| Content::Texture(Arc::clone(texture))),
             Input::View(view) => {
                 let place = plan.views.iter().position(|known| known == view);
                 Content::Bytes(place.and_then(|place| scene.views.get(place)).cloned().unwrap_or_default())

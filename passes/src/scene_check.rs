@@ -23,6 +23,12 @@ pub(crate) fn check(
         check_geometry(schema, &scene.geometry, limits, &mut problems);
         check_draw_lists(plan, needs, scene, &mut problems);
     }
+    for name in &needs.textures {
+        problems.extend(match scene.textures.get(name) {
+            Some(texture) => check_texture(texture, limits),
+            None => Some(Diagnostic::error("execute::missing-texture", format!("the scene does not publish the texture `{name}`"))),
+        });
+    }
     if needs.materials {
         check_materials(schema, scene, &mut problems);
         problems.extend(scene.materials.textures.iter().filter_map(|texture| check_texture(texture, limits)));
@@ -120,7 +126,7 @@ fn check_texture(texture: &PublishedTexture, limits: &wgpu::Limits) -> Option<Di
         let message = format!("the texture `{name}` has {} levels; {width}x{height} texels take 1 to {levels}", texture.mips.len());
         return Some(Diagnostic::error("execute::texture-levels", message));
     }
-    let bytes = |level: usize| u64::from((width >> level).max(1)) * u64::from((height >> level).max(1)) * 4;
+    let bytes = |level: usize| u64::from((width >> level).max(1)) * u64::from((height >> level).max(1)) * u64::from(texture.texels.bytes());
     let wrong = texture.mips.iter().enumerate().find(|(level, content)| content.len() as u64 != bytes(*level))?;
     let message = format!("level {} of the texture `{name}` has {} bytes instead of {}", wrong.0, wrong.1.len(), bytes(wrong.0));
     Some(Diagnostic::error("execute::texture-levels", message))
@@ -135,11 +141,13 @@ fn too_large(what: &str, bytes: u64, limit: u64, problems: &mut Vec<Diagnostic>)
 
 #[cfg(test)]
 mod tests {
+    use luminaire_graph::published::PublishedTexels;
+
     use super::*;
 
     fn texture(width: u32, mips: &[usize]) -> PublishedTexture {
         let mips = mips.iter().map(|bytes| vec![0; *bytes].into()).collect();
-        PublishedTexture { name: "brick".to_owned(), srgb: false, width, height: 2, mips }
+        PublishedTexture { name: "brick".to_owned(), texels: PublishedTexels::Unorm8, width, height: 2, mips }
     }
 
     #[test]

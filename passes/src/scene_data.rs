@@ -11,7 +11,7 @@ use std::sync::Arc;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::plan::{BindingTarget, Plan, StepKind};
 use luminaire_graph::published::{
-    PublishedMaterials, PublishedSampler, PublishedScene, PublishedSchema, PublishedTexture, Table, TableKind,
+    PublishedMaterials, PublishedSampler, PublishedScene, PublishedSchema, PublishedTexels, PublishedTexture, Table, TableKind,
 };
 
 use crate::device::Gpu;
@@ -29,6 +29,8 @@ pub(crate) struct Needs {
     pub(crate) tables: BTreeMap<String, TableKind>,
     /// Rows that are bound by themselves.
     pub(crate) rows: BTreeSet<(String, u32)>,
+    /// Textures of the scene by name.
+    pub(crate) textures: BTreeSet<String>,
     /// Some step binds a view.
     pub(crate) views: bool,
     /// Some step draws.
@@ -52,6 +54,9 @@ impl Needs {
                     }
                     BindingTarget::TableRow(table, row) => {
                         needs.rows.insert((table.clone(), *row));
+                    }
+                    BindingTarget::SceneTexture(name) => {
+                        needs.textures.insert(name.clone());
                     }
                     BindingTarget::View(_) => needs.views = true,
                     BindingTarget::MaterialTexture(_) | BindingTarget::MaterialSampler(_) => needs.materials = true,
@@ -79,6 +84,7 @@ pub(crate) struct SceneData {
     needs: Needs,
     tables: BTreeMap<String, wgpu::Buffer>,
     rows: BTreeMap<(String, u32), wgpu::Buffer>,
+    named_textures: BTreeMap<String, wgpu::TextureView>,
     created: u64,
     views: Vec<wgpu::Buffer>,
     vertices: Option<wgpu::Buffer>,
@@ -95,6 +101,7 @@ impl SceneData {
             needs: Needs::of(plan),
             tables: BTreeMap::new(),
             rows: BTreeMap::new(),
+            named_textures: BTreeMap::new(),
             created: 0,
             views: Vec::new(),
             vertices: None,
@@ -176,6 +183,11 @@ impl SceneData {
         self.vertices.as_ref().zip(self.indices.as_ref())
     }
 
+    /// A texture of the scene.
+    pub(crate) fn named_texture(&self, name: &str) -> Option<&wgpu::TextureView> {
+        self.named_textures.get(name)
+    }
+
     /// A material's texture, by its index in the scene.
     pub(crate) fn texture(&self, index: usize) -> Option<&wgpu::TextureView> {
         self.textures.get(index)
@@ -234,6 +246,15 @@ impl SceneData {
                 );
                 let [before, after] = [&old, new].map(|scene| bytemuck::cast_slice(&scene.geometry.indices));
                 put(gpu, &mut self.indices, "indices", Some(before), after, 4, wgpu::BufferUsages::INDEX);
+            }
+        }
+        for name in &self.needs.textures {
+            let Some(texture) = new.textures.get(name) else { continue };
+            let same = old.textures.get(name).is_some_and(|old| same_texture(old, texture));
+            if !same || !self.named_textures.contains_key(name) {
+                changed.bound = true;
+                let view = create_texture(gpu, texture).create_view(&wgpu::TextureViewDescriptor::default());
+                self.named_textures.insert(name.clone(), view);
             }
         }
         if self.needs.materials {
@@ -338,8 +359,8 @@ fn put(
 }
 
 /// Names do not count.
-fn same_texture(old: &Arc<PublishedTexture>, new: &Arc<PublishedTexture>) -> bool {
-    Arc::ptr_eq(old, new) || (old.srgb, old.width, old.height) == (new.srgb, new.width, new.height) && old.mips == new.mips
+pub(crate) fn same_texture(old: &Arc<PublishedTexture>, new: &Arc<PublishedTexture>) -> bool {
+    Arc::ptr_eq(old, new) || (old.texels, old.width, old.height) == (new.texels, new.width, new.height) && old.mips == new.mips
 }
 
 /// The texture has been checked: every level has its bytes.
@@ -351,7 +372,11 @@ fn create_texture(gpu: &Gpu, texture: &PublishedTexture) -> wgpu::Texture {
         mip_level_count: texture.mips.len() as u32,
         sample_count: 1,
         dimension: wgpu::TextureDimension::D2,
-        format: if texture.srgb { wgpu::TextureFormat::Rgba8UnormSrgb } else { wgpu::TextureFormat::Rgba8Unorm },
+        format: match texture.texels {
+            PublishedTexels::Unorm8 => wgpu::TextureFormat::Rgba8Unorm,
+            PublishedTexels::Srgb8 => wgpu::TextureFormat::Rgba8UnormSrgb,
+            PublishedTexels::Half => wgpu::TextureFormat::Rgba16Float,
+        },
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],
     });
@@ -360,7 +385,7 @@ fn create_texture(gpu: &Gpu, texture: &PublishedTexture) -> wgpu::Texture {
         gpu.queue.write_texture(
             wgpu::TexelCopyTextureInfo { mip_level: level as u32, ..created.as_image_copy() },
             bytes,
-            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(level_size.width * 4), rows_per_image: None },
+            wgpu::TexelCopyBufferLayout { offset: 0, bytes_per_row: Some(level_size.width * texture.texels.bytes()), rows_per_image: None },
             level_size,
         );
     }

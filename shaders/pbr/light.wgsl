@@ -1,4 +1,4 @@
-// Emission, direct light, and the sky where nothing stands, per texel of the G-buffer.
+// Emission and direct light per texel of the G-buffer; black where nothing stands.
 
 #import "shared/direct_light.wgsl"
 #import "shared/gbuffer_textures.wgsl"
@@ -14,7 +14,7 @@ fn shade(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> Tar
     let texel = vec2<i32>(place.xy);
     let stored_depth = textureLoad(depth, texel, 0);
     if stored_depth == NOTHING_THERE {
-        return Targets(vec4<f32>(fit_half(environment.sky_radiance * environment.inverse_light_unit), 1.0));
+        return Targets(vec4<f32>(0.0, 0.0, 0.0, 1.0));
     }
     var point = load_gbuffer(texel, unjittered_uv(uv), stored_depth);
     point.pixel = pixel_of_sample(point.pixel);

@@ -13,6 +13,9 @@ struct Environment {
     local_count: u32,
     // Entries in use of `rectangle_lights`.
     rectangle_count: u32,
+    // Factor on the image of the sky, and by how much that is turned about +Y, radians.
+    sky_strength: f32,
+    sky_rotation: f32,
 }
 
 var<uniform> environment: Environment;

@@ -23,6 +23,7 @@ mod runs;
 mod shadow_kinds;
 mod shadows;
 mod sky;
+mod sky_image;
 mod steady;
 mod supersample;
 mod tone_mapping;
@@ -35,7 +36,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 18] = [
+    let groups: [&[Case]; 19] = [
         antialiasing::CASES,
         area::CASES,
         brdf::CASES,
@@ -51,6 +52,7 @@ fn main() {
         shadow_kinds::CASES,
         shadows::CASES,
         sky::CASES,
+        sky_image::CASES,
         steady::CASES,
         supersample::CASES,
         tone_mapping::CASES,

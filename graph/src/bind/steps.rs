@@ -177,6 +177,7 @@ impl<'a> Builder<'a> {
                     let reads = self.reads(program, &binding.variable, table);
                     found.push(Input::Row(table.clone(), *row, reads));
                 }
+                BindingTarget::SceneTexture(name) => found.push(Input::Texture(name.clone())),
                 BindingTarget::MaterialTexture(_) | BindingTarget::MaterialSampler(_) => drawn.textures = true,
                 BindingTarget::View(view) => found.extend(self.views.values.get(*view).copied().map(Input::View)),
                 BindingTarget::Params { .. } => {
@@ -346,7 +347,13 @@ impl<'a> Builder<'a> {
         let published = self.input.published;
         let slots = pass.reads.iter().chain(&pass.writes).chain(&pass.modifies).map(|slot| slot.name.value.clone());
         let free = slots.filter(|slot| !taken.iter().any(|taken| taken.name == *slot));
-        let names = published.tables.keys().chain(&published.material_textures).chain(&published.material_samplers).cloned();
+        let names = published
+            .tables
+            .keys()
+            .chain(&published.textures)
+            .chain(&published.material_textures)
+            .chain(&published.material_samplers)
+            .cloned();
         let builtin = crate::plan::BuiltinSampler::ALL.into_iter().map(|sampler| sampler.name().to_owned());
         BindError::Unfed {
             pass: pass.name.clone(),

@@ -35,12 +35,19 @@ pub(super) fn bind(
             }
         });
     }
+    let texture_2d =
+        matches!(&global.kind, GlobalKind::Texture { dimension: ViewDimension::D2, kind: ScalarKind::Float, multisampled: false, .. });
+    if published.textures.iter().any(|known| known == name) {
+        return Some(if texture_2d {
+            Ok(BindingTarget::SceneTexture(name.to_owned()))
+        } else {
+            mismatch(Mismatch::Kind, "is a texture of the scene", Some(format!("declare `var {name}: texture_2d<f32>;`")))
+        });
+    }
     let is_draw = matches!(pass.kind, PassKind::Draw { .. });
     let material = |list: &[String]| list.iter().position(|known| known == name);
     if let Some(index) = material(&published.material_textures) {
-        let kind = &global.kind;
-        let fits = matches!(kind, GlobalKind::Texture { dimension: ViewDimension::D2, kind: ScalarKind::Float, multisampled: false, .. });
-        return Some(match (is_draw, fits) {
+        return Some(match (is_draw, texture_2d) {
             (false, _) => mismatch(Mismatch::Kind, "is a texture of the material that is drawn, and this pass draws none", None),
             (true, false) => {
                 mismatch(Mismatch::Kind, "is a texture of the material", Some(format!("declare `var {name}: texture_2d<f32>;`")))

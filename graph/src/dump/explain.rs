@@ -135,6 +135,7 @@ pub(crate) fn input_name(plan: &Plan, index: usize) -> String {
     match plan.inputs.get(index) {
         Some(Input::Table(name, reads)) => format!("{name}{reads}"),
         Some(Input::Row(name, row, reads)) => format!("{name}[{row}]{reads}"),
+        Some(Input::Texture(name)) => name.clone(),
         Some(Input::View(view)) => format!("view of {}", describe::view(view.kind)),
         Some(Input::Draws(filter, view, _)) => format!("{} surfaces of {}", describe::objects(*filter), describe::view(*view)),
         Some(Input::Param(name)) => format!("parameter {name}"),

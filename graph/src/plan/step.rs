@@ -69,6 +69,8 @@ pub enum Input {
     Table(String, RowReads),
     /// What is read of a row of a published table.
     Row(String, u32, RowReads),
+    /// A published texture of the whole scene.
+    Texture(String),
     /// The table of a view.
     View(ViewRequest),
     /// What a draw list shows: its batches, their geometry, and what is read of their rows.
@@ -277,6 +279,8 @@ pub enum BindingTarget {
         /// Where the number of the run goes, in an accumulating pass whose shader asks for it.
         accumulated: Option<usize>,
     },
+    /// A published texture of the whole scene.
+    SceneTexture(String),
     /// A texture of the material that is drawn, by index into the schema's list.
     MaterialTexture(usize),
     /// A sampler of the material that is drawn, by index into the schema's list.

@@ -11,8 +11,8 @@ use indexmap::IndexMap;
 
 pub use reads::{ReadMember, RowReads};
 pub use scene::{
-    DrawBatch, DrawList, MaterialBinding, PublishedGeometry, PublishedMaterials, PublishedSampler, PublishedScene, PublishedTexture,
-    PublishedWrap,
+    DrawBatch, DrawList, MaterialBinding, PublishedGeometry, PublishedMaterials, PublishedSampler, PublishedScene, PublishedTexels,
+    PublishedTexture, PublishedWrap,
 };
 pub use table::Table;
 
@@ -21,6 +21,8 @@ pub use table::Table;
 pub struct PublishedSchema {
     /// Tables, by the name of the shader variable.
     pub tables: IndexMap<String, TableSchema>,
+    /// 2D textures of the whole scene: variable names.
+    pub textures: Vec<String>,
     /// Per-material textures, available to Draw passes: variable names in the order of [`MaterialBinding::textures`].
     pub material_textures: Vec<String>,
     /// Per-material samplers, in the order of [`MaterialBinding::samplers`].

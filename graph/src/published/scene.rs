@@ -17,6 +17,8 @@ pub struct PublishedScene {
     pub views: Vec<Vec<u8>>,
     /// Vertices and indices of all meshes.
     pub geometry: Arc<PublishedGeometry>,
+    /// Textures of the whole scene, by name.
+    pub textures: IndexMap<String, Arc<PublishedTexture>>,
     /// What materials bind.
     pub materials: Arc<PublishedMaterials>,
     /// For each requested draw list, its batches.
@@ -61,19 +63,40 @@ impl PublishedScene {
     }
 }
 
-/// An image with its mips: RGBA, 8 bits per channel.
+/// An image with its mips: RGBA.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PublishedTexture {
     /// For messages.
     pub name: String,
-    /// Sampled values are decoded from sRGB.
-    pub srgb: bool,
+    /// How a texel lies in memory.
+    pub texels: PublishedTexels,
     /// Of level 0.
     pub width: u32,
     /// Of level 0.
     pub height: u32,
     /// Level by level, tightly packed rows. Level 0 may be shared with whoever has the image.
     pub mips: Vec<Arc<[u8]>>,
+}
+
+/// How texels of a published texture lie in memory.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum PublishedTexels {
+    /// 8 bits a channel, 0 to 1.
+    Unorm8,
+    /// 8 bits a channel; sampled values are decoded from sRGB.
+    Srgb8,
+    /// Half floats.
+    Half,
+}
+
+impl PublishedTexels {
+    /// Bytes of a texel.
+    pub fn bytes(self) -> u32 {
+        match self {
+            PublishedTexels::Unorm8 | PublishedTexels::Srgb8 => 4,
+            PublishedTexels::Half => 8,
+        }
+    }
 }
 
 /// Filtering and addressing.

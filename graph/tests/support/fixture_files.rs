@@ -74,6 +74,7 @@ pub fn schema() -> PublishedSchema {
     };
     PublishedSchema {
         tables: [("camera".to_owned(), camera), ("point_lights".to_owned(), lights)].into_iter().collect(),
+        textures: Vec::new(),
         material_textures: vec!["base_color_texture".to_owned()],
         material_samplers: vec!["base_color_sampler".to_owned()],
         vertex: VertexSchema {

@@ -5,8 +5,8 @@ use std::sync::Arc;
 use luminaire_graph::plan::Cull;
 use luminaire_graph::plan::{BindingTarget, Stages};
 use luminaire_graph::published::{
-    DrawBatch, MaterialBinding, PublishedMaterials, PublishedSampler, PublishedTexture, PublishedWrap, Table, TableKind, TableSchema,
-    ViewKind, ViewRequest,
+    DrawBatch, MaterialBinding, PublishedMaterials, PublishedSampler, PublishedTexels, PublishedTexture, PublishedWrap, Table, TableKind,
+    TableSchema, ViewKind, ViewRequest,
 };
 use luminaire_passes::Gpu;
 
@@ -32,7 +32,8 @@ struct Varyings { @builtin(position) at: vec4<f32>, @location(0) slot: f32 }
 
 fn texture(color: [u8; 4], srgb: bool) -> Arc<PublishedTexture> {
     let mips = vec![color.repeat(4).into(), color.into()];
-    Arc::new(PublishedTexture { name: "color".to_owned(), srgb, width: 2, height: 2, mips })
+    let texels = if srgb { PublishedTexels::Srgb8 } else { PublishedTexels::Unorm8 };
+    Arc::new(PublishedTexture { name: "color".to_owned(), texels, width: 2, height: 2, mips })
 }
 
 fn slots(rows: &[u32]) -> Table {

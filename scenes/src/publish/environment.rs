@@ -6,6 +6,7 @@ use glam::Vec3;
 
 use super::layout::EnvironmentTable;
 use super::lights::Lights;
+use super::sky_image::Sky;
 use crate::asset::Material;
 use crate::world::{Aabb, Environment};
 
@@ -19,11 +20,12 @@ pub(super) fn table(
     environment: Environment,
     lights: &Lights,
     rectangle_count: usize,
+    image: Sky,
     materials: &[Material],
     bounds: Option<Aabb>,
 ) -> EnvironmentTable {
     let sky = if environment.sky_radiance.is_finite() { environment.sky_radiance.max(Vec3::ZERO) } else { Vec3::ZERO };
-    let unit = light_unit(brightest(sky, lights, materials, bounds));
+    let unit = light_unit(brightest(sky, lights, materials, bounds).max(image.brightest));
     EnvironmentTable {
         sky_radiance: sky.to_array(),
         light_unit: unit,
@@ -31,6 +33,9 @@ pub(super) fn table(
         directional_count: lights.suns.len() as u32,
         local_count: lights.lamps.len() as u32,
         rectangle_count: rectangle_count as u32,
+        sky_strength: image.strength,
+        sky_rotation: image.rotation,
+        padding: [0; 2],
     }
 }
 

@@ -52,6 +52,11 @@ pub struct EnvironmentTable {
     pub local_count: u32,
     /// Rows of `rectangle_lights`.
     pub rectangle_count: u32,
+    /// Factor on the image of the sky; 0 where there is none.
+    pub sky_strength: f32,
+    /// By how much that is turned about +Y, radians.
+    pub sky_rotation: f32,
+    pub padding: [u32; 2],
 }
 
 /// An element of `directional_lights`.

@@ -46,10 +46,10 @@ pub(super) struct Levels {
 }
 
 /// Filtered texels: four numbers each, in the role's space.
-struct Level {
-    width: u32,
-    height: u32,
-    texels: Vec<[f32; 4]>,
+pub(super) struct Level {
+    pub(super) width: u32,
+    pub(super) height: u32,
+    pub(super) texels: Vec<[f32; 4]>,
 }
 
 /// All levels of an image whose edges are at most `max_edge`; larger ones lose their topmost levels.
@@ -86,7 +86,7 @@ pub(super) fn build(image: &Image, role: Role, max_edge: u32) -> Levels {
 }
 
 /// The next level: each texel is the mean over its area, whose borders may cut texels above.
-fn shrink(width: u32, height: u32, fetch: impl Fn(usize) -> [f32; 4]) -> Level {
+pub(super) fn shrink(width: u32, height: u32, fetch: impl Fn(usize) -> [f32; 4]) -> Level {
     let (columns, rows) = (spans(width), spans(height));
     let mut texels = Vec::with_capacity(columns.len() * rows.len());
     for row in &rows {

@@ -26,6 +26,7 @@ mod reach;
 mod rectangles;
 mod request;
 mod schema;
+mod sky_image;
 mod spot;
 mod sun;
 mod texture_cache;

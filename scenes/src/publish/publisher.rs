@@ -15,6 +15,8 @@ use super::geometry::{self, Geometry};
 use super::objects::Objects;
 use super::projection::CameraView;
 use super::request::{self, PublishRequest, Published};
+use super::schema::SKY_IMAGE;
+use super::sky_image::SkyTexture;
 use super::spot::SpotView;
 use super::sun::SunView;
 use super::texture_cache::TextureCache;
@@ -31,6 +33,7 @@ pub struct Publisher {
     materials: Option<Tick>,
     geometry: Geometry,
     textures: TextureCache,
+    sky: SkyTexture,
     objects: Objects,
     visible: Visible,
     draws: Draws,
@@ -101,7 +104,8 @@ impl Publisher {
         let views = request.views.iter().zip(&suns).map(view_bytes).collect();
         let environment = *world.get_resource_or_init::<Environment>();
         let rectangles = rectangles::rows(world);
-        let environment = environment::table(environment, &lights, rectangles.len(), &materials, bounds);
+        let (sky_image, sky) = self.sky.update(world, request.max_texture_2d);
+        let environment = environment::table(environment, &lights, rectangles.len(), sky, &materials, bounds);
         self.set("camera", &[camera.table()]);
         self.set("environment", &[environment]);
         self.set("directional_lights", &lights.directional_rows(request.views, &suns));
@@ -116,7 +120,15 @@ impl Publisher {
         self.tables.insert("instances".to_owned(), self.objects.table().clone());
         self.tables.insert("instance_slots".to_owned(), self.draws.table().clone());
         let (materials, warnings) = self.textures.update(world, &materials, request.max_texture_2d);
-        let scene = PublishedScene { tables: self.tables.clone(), views, geometry: self.geometry.published.clone(), materials, draw_lists };
+        let textures = [(SKY_IMAGE.to_owned(), sky_image)].into_iter().collect();
+        let scene = PublishedScene {
+            tables: self.tables.clone(),
+            views,
+            textures,
+            geometry: self.geometry.published.clone(),
+            materials,
+            draw_lists,
+        };
         Ok(Published { scene, warnings: warnings.to_vec() })
     }
 

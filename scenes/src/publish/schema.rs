@@ -28,6 +28,9 @@ pub const TEXTURE_NAMES: [&str; TEXTURES] = [
 pub const COUNT_NAMES: [&str; 8] =
     ["directional_lights", "point_lights", "spot_lights", "local_lights", "rectangle_lights", "opaque", "masked", "blended"];
 
+/// The image of the sky.
+pub(super) const SKY_IMAGE: &str = "sky_image";
+
 /// Tables of which a Draw sees what it draws.
 const PER_DRAW: [&str; 3] = ["instances", "instance_slots", "materials"];
 
@@ -84,6 +87,8 @@ pub fn schema() -> PublishedSchema {
             directional_count: "u32",
             local_count: "u32",
             rectangle_count: "u32",
+            sky_strength: "f32",
+            sky_rotation: "f32",
         }),
     );
     add(
@@ -190,6 +195,7 @@ pub fn schema() -> PublishedSchema {
     );
     PublishedSchema {
         tables,
+        textures: vec![SKY_IMAGE.to_owned()],
         material_textures: TEXTURE_NAMES.map(str::to_owned).to_vec(),
         material_samplers: TEXTURE_NAMES.map(|name| name.replace("_texture", "_sampler")).to_vec(),
         vertex: vertex_schema(),
@@ -256,7 +262,7 @@ mod tests {
         let expected = [
             ("camera", 288),
             ("view", 96),
-            ("environment", 32),
+            ("environment", 48),
             ("directional_lights", 112),
             ("cascades", 80),
             ("local_lights", 64),

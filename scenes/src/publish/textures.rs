@@ -8,7 +8,7 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 
 use luminaire_graph::diagnostic::Diagnostic;
-use luminaire_graph::published::{MaterialBinding, PublishedMaterials, PublishedSampler, PublishedTexture, PublishedWrap};
+use luminaire_graph::published::{MaterialBinding, PublishedMaterials, PublishedSampler, PublishedTexels, PublishedTexture, PublishedWrap};
 
 use super::coverage;
 use super::materials::texture_uses;
@@ -62,7 +62,8 @@ pub(super) fn build(materials: &[Material], images: &[Image], max_edge: u32, bef
     for ((index, role), levels) in missing.iter().zip(build_levels(&missing, images, max_edge)) {
         let Some(image) = images.get(*index) else { continue };
         let Levels { width, height, bytes: mips } = levels;
-        built.insert((*index, *role), Arc::new(PublishedTexture { name: image.name.clone(), srgb: role.is_srgb(), width, height, mips }));
+        let texels = if role.is_srgb() { PublishedTexels::Srgb8 } else { PublishedTexels::Unorm8 };
+        built.insert((*index, *role), Arc::new(PublishedTexture { name: image.name.clone(), texels, width, height, mips }));
     }
     let mut warnings: Vec<Diagnostic> = Vec::new();
     for job in &jobs {
@@ -124,7 +125,7 @@ fn build_levels(jobs: &[(usize, Role)], images: &[Image], max_edge: u32) -> Vec<
 }
 
 fn single(name: &str, texel: [u8; 4]) -> Arc<PublishedTexture> {
-    Arc::new(PublishedTexture { name: name.to_owned(), srgb: false, width: 1, height: 1, mips: vec![texel.into()] })
+    Arc::new(PublishedTexture { name: name.to_owned(), texels: PublishedTexels::Unorm8, width: 1, height: 1, mips: vec![texel.into()] })
 }
 
 fn sampler(sampler: Sampler) -> PublishedSampler {
@@ -171,7 +172,8 @@ mod tests {
             Material { base_color_texture: texture(0), alpha_mode: AlphaMode::Mask { cutoff: 0.5 }, ..Material::default() },
         ];
         let TextureSet { published: set, warnings, .. } = build(&materials, &images, 8192, None);
-        let names: Vec<(&str, bool)> = set.textures.iter().map(|texture| (texture.name.as_str(), texture.srgb)).collect();
+        let names: Vec<(&str, bool)> =
+            set.textures.iter().map(|texture| (texture.name.as_str(), texture.texels == PublishedTexels::Srgb8)).collect();
         assert_eq!(names, [("white", false), ("flat normal", false), ("b", true), ("a", true), ("a", false), ("a", true)]);
         assert_eq!(set.bindings[0].textures, [2, 0, 1, 0, 3, 0, 0]);
         assert_eq!(set.bindings[0].samplers, [0, 0, 0, 0, 1, 0, 0]);

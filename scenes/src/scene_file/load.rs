@@ -7,7 +7,7 @@ use luminaire_graph::diagnostic::{Diagnostic, has_errors};
 use luminaire_graph::source::SourceMap;
 use luminaire_graph::syntax::read_document;
 
-use super::assets::{Place, load_files};
+use super::assets::{Place, load_files, load_sky};
 use super::check::{Checked, check};
 use super::checks::Problems;
 use super::document::SceneDoc;
@@ -71,13 +71,16 @@ fn load(name: &str, text: &str, place: Option<Place<'_>>, sources: &mut SourceMa
     let file = sources.add(name, text);
     let document: SceneDoc = read_document(text, file)?;
     let mut problems = Problems::default();
-    let Checked { sky_radiance, least_illuminance, materials, primitives, declarations, initial, spawned: batches, files } =
+    let Checked { sky_radiance, sky_image, least_illuminance, materials, primitives, declarations, initial, spawned: batches, files } =
         check(&document, &mut problems);
     let mut world = new_world();
     world.insert_resource(Environment { sky_radiance, least_illuminance });
     // First of all, so that their rows are those that were counted.
     world.insert_resource(Materials(materials));
     world.insert_resource(Meshes(primitives.meshes));
+    if let Some(sky) = sky_image.and_then(|sky| load_sky(&sky, place, &mut problems)) {
+        world.insert_resource(sky);
+    }
     let files = load_files(&mut world, &files, place, &mut problems);
     check_size(&declarations, &files, &world, &mut problems);
     let mut names = Names::new(&declarations, &files, &document.timeline);

@@ -2,10 +2,13 @@
 //!
 //! The lists only grow, so that an index stays valid, and a material's index is its row in the published table.
 
+use std::sync::Arc;
+
 use bevy_ecs::prelude::{Resource, World};
 use glam::Vec3;
 
 use crate::asset::{Image, Material, Mesh};
+use crate::linear_image::LinearImage;
 
 /// Every mesh, by [`super::MeshInstance::mesh`].
 #[derive(Resource, Debug, Default)]
@@ -33,6 +36,17 @@ impl Default for Environment {
     fn default() -> Environment {
         Environment { sky_radiance: Vec3::ZERO, least_illuminance: 0.001 }
     }
+}
+
+/// An image of the sky, which adds its light to [`Environment::sky_radiance`]. Not there unless a scene has one.
+#[derive(Resource, Debug, Clone, PartialEq)]
+pub struct SkyImage {
+    /// Equirectangular, nits: u = atan2(z, x) / 2 pi + 1/2 and v = acos(y) / pi of a direction, the top row is up.
+    pub image: Arc<LinearImage>,
+    /// By how much it is turned about +Y, radians.
+    pub rotation: f32,
+    /// Factor on its radiance.
+    pub strength: f32,
 }
 
 /// A world with nothing in it.

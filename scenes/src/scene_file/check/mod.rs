@@ -20,7 +20,7 @@ use luminaire_graph::syntax::document::{Entries, Text};
 use luminaire_graph::syntax::spanned::Spanned;
 
 use super::checks::{BRIGHT, FAR, LATE, Problems, SMALL};
-use super::document::{ActionDoc, AnimationDoc, FileDoc, GroupDoc, LightDoc, MaterialDoc, ObjectDoc, SceneDoc};
+use super::document::{ActionDoc, AnimationDoc, EnvironmentDoc, FileDoc, GroupDoc, LightDoc, MaterialDoc, ObjectDoc, SceneDoc};
 use crate::asset::Material;
 use crate::world::{
     Camera, CameraPath, DirectionalLight, Environment, LocalLight, ProbeVolume, RectangleLight, ReflectionProbe, Volume, look_at,
@@ -33,6 +33,7 @@ const MAX_EVENTS: usize = 100_000;
 #[derive(Debug, Default)]
 pub(super) struct Checked {
     pub(super) sky_radiance: Vec3,
+    pub(super) sky_image: Option<SkyUse>,
     /// Lux.
     pub(super) least_illuminance: f32,
     /// The named ones first, in their order.
@@ -45,6 +46,15 @@ pub(super) struct Checked {
     /// For each event, the declarations that it spawns.
     pub(super) spawned: Vec<Range<usize>>,
     pub(super) files: Vec<FileUse>,
+}
+
+/// An image of the sky.
+#[derive(Debug)]
+pub(super) struct SkyUse {
+    pub(super) path: Text,
+    /// Radians.
+    pub(super) rotation: f32,
+    pub(super) strength: f32,
 }
 
 /// Something that stands, or will stand, in a scene.
@@ -110,10 +120,27 @@ pub(super) struct FileUse {
     pub(super) appears: f64,
 }
 
+fn sky_image(environment: &EnvironmentDoc, problems: &mut Problems) -> Option<SkyUse> {
+    let rotation = problems.number("`rotation` of the environment", environment.rotation.as_ref(), 0.0, -360.0..=360.0);
+    let strength = problems.number("`strength` of the environment", environment.strength.as_ref(), 1.0, 0.0..=BRIGHT);
+    let Some(path) = environment.image.clone() else {
+        for (name, number) in [("rotation", &environment.rotation), ("strength", &environment.strength)] {
+            if let Some(number) = number {
+                let message = format!("`{name}` of the environment turns nothing: there is no `image`");
+                let message = if name == "strength" { message.replace("turns", "brightens") } else { message };
+                problems.add(Diagnostic::error("scene::no-sky-image", message).at(number.span, "of which image?"));
+            }
+        }
+        return None;
+    };
+    Some(SkyUse { path, rotation: rotation.to_radians(), strength })
+}
+
 /// Checks everything but names of nodes and what the timeline changes; what is wrong goes to `problems`.
 pub(super) fn check(document: &SceneDoc, problems: &mut Problems) -> Checked {
     let mut checked = Checked {
         sky_radiance: problems.color("`sky_radiance` of the environment", document.environment.sky_radiance.as_ref(), Vec3::ZERO, BRIGHT),
+        sky_image: sky_image(&document.environment, problems),
         least_illuminance: problems.number(
             "`least_illuminance` of the environment",
             document.environment.least_illuminance.as_ref(),

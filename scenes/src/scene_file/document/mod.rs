@@ -10,7 +10,7 @@ pub use motion::*;
 pub use nodes::*;
 pub use timeline::*;
 
-use luminaire_graph::syntax::document::Entries;
+use luminaire_graph::syntax::document::{Entries, Text};
 use luminaire_graph::syntax::spanned::Spanned;
 use serde::Deserialize;
 
@@ -62,6 +62,15 @@ pub struct EnvironmentDoc {
     /// Radiance from all directions, nits; black unless said otherwise.
     #[serde(default)]
     pub sky_radiance: Option<Vector>,
+    /// An equirectangular .hdr or .exr file whose radiance is added to that.
+    #[serde(default)]
+    pub image: Option<Text>,
+    /// Degrees by which the image is turned about +Y; 0 unless said otherwise.
+    #[serde(default)]
+    pub rotation: Option<Number>,
+    /// Factor on the image's radiance; 1 unless said otherwise.
+    #[serde(default)]
+    pub strength: Option<Number>,
     /// Lux: a point or spot light without a range ends where it gives less; a thousandth unless said otherwise, 0 is never.
     #[serde(default)]
     pub least_illuminance: Option<Number>,
