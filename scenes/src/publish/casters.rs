@@ -192,5 +192,16 @@ mod tests {
             let face = 2 * axis + usize::from(point[axis] < 0.0);
             prop_assert!(seen >> face & 1 == 1, "{:?} on {}: {:b}", point, face, seen);
         }
+
+        /// Nor does it from another point from where its cube may be drawn.
+        #[test]
+        fn no_face_misses_a_point_from_aside(center in prop::array::uniform3(-9.0_f32..9.0), aside in prop::array::uniform3(-1.0_f32..1.0), radius in 0.01_f32..3.0) {
+            let aside = Vec3::from_array(aside).clamp_length_max(1.0) * radius;
+            let seen = faces(grown(cube(Vec3::from_array(center), 0.1), f64::from(radius)), DVec3::ZERO, f64::INFINITY);
+            let point = (Vec3::from_array(center) - aside).as_dvec3();
+            let axis = (0..3).max_by(|a, b| point[*a].abs().total_cmp(&point[*b].abs())).unwrap();
+            let face = 2 * axis + usize::from(point[axis] < 0.0);
+            prop_assert!(seen >> face & 1 == 1, "{:?} on {}: {:b}", point, face, seen);
+        }
     }
 }
