@@ -15,6 +15,10 @@ struct RectangleLight {
     area: f32,
     // Nits, the same in all directions.
     radiance: vec3<f32>,
+    // Near plane of the faces of its shadow cube, metres.
+    near: f32,
+    // Far plane of the faces, metres; 0 where there is no light.
+    far: f32,
 }
 
 var<storage, read> rectangle_lights: array<RectangleLight>;

@@ -1,7 +1,7 @@
 // Light that reaches a surface straight from the scene's lights, shadows included, and leaves it towards the eye.
 //
-// The first lights of each kind have shadow maps (shared/shadow.wgsl), the others, rectangles among them, give light without shadow. The
-// sky gives none: it is no punctual light.
+// The first lights of each kind have shadow maps (shared/shadow.wgsl, area/visibility.wgsl), the others give light without shadow. The sky
+// gives none: it is no punctual light.
 
 #import "area/rectangle_light.wgsl"
 #import "shared/brdf.wgsl"

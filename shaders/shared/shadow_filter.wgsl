@@ -31,13 +31,6 @@ const SEARCH_CROWDING: f32 = 5.0;
 // The widest penumbra, as a part of the map's width.
 const WIDEST_PENUMBRA: f32 = 0.125;
 
-// The four texels around the receiver.
-struct NearestFour {
-    visibility: f32,
-    // Whether one of them holds the receiver's plane.
-    seen: bool,
-}
-
 // How many texels from the receiver a filter looks at. `pcss` takes what is there.
 fn filter_reach() -> f32 {
     switch shadow_filter {
@@ -61,25 +54,15 @@ fn filtered_shadow(receiver: ShadowReceiver, pixel: vec2<f32>) -> f32 {
     }
 }
 
-// Each texel is lit or not; they are weighed by nearness, which makes an edge one texel wide.
 fn nearest_four(receiver: ShadowReceiver) -> NearestFour {
     let corner = floor(receiver.place - 0.5);
-    let a = shadow_texel(receiver, corner);
-    let b = shadow_texel(receiver, corner + vec2<f32>(1.0, 0.0));
-    let c = shadow_texel(receiver, corner + vec2<f32>(0.0, 1.0));
-    let d = shadow_texel(receiver, corner + vec2<f32>(1.0, 1.0));
-    let seen = holds_plane(receiver, a, 1.0) || holds_plane(receiver, b, 1.0)
-        || holds_plane(receiver, c, 1.0) || holds_plane(receiver, d, 1.0);
-    let lit = vec4<bool>(
-        lets_light_through(receiver, a, 1.0, seen),
-        lets_light_through(receiver, b, 1.0, seen),
-        lets_light_through(receiver, c, 1.0, seen),
-        lets_light_through(receiver, d, 1.0, seen),
+    return compared_four(
+        receiver,
+        shadow_texel(receiver, corner),
+        shadow_texel(receiver, corner + vec2<f32>(1.0, 0.0)),
+        shadow_texel(receiver, corner + vec2<f32>(0.0, 1.0)),
+        shadow_texel(receiver, corner + vec2<f32>(1.0, 1.0)),
     );
-    let place = receiver.place - 0.5 - corner;
-    let weight_x = vec4<f32>(1.0 - place.x, place.x, 1.0 - place.x, place.x);
-    let weight_y = vec4<f32>(1.0 - place.y, 1.0 - place.y, place.y, place.y);
-    return NearestFour(dot(weight_x * weight_y, select(vec4<f32>(0.0), vec4<f32>(1.0), lit)), seen);
 }
 
 // The nearest distance at which the receiver's plane stands in the four texels, less what (c) forgives everywhere: a plane does not shadow

@@ -2,11 +2,10 @@
 // in WebGPU's order of faces. The map is seen as an array of images, since single texels must be looked at; in slot `point_cubes` the
 // same as cubes, for samplers.
 //
-// Guarantees: see shared/shadow_receiver.wgsl; edges between faces make no seam, for places up to half a face beyond an edge.
+// Guarantees: see shared/shadow_receiver.wgsl and shared/shadow_cube.wgsl.
 
-#import "shared/cube.wgsl"
 #import "shared/lights.wgsl"
-#import "shared/shadow_receiver.wgsl"
+#import "shared/shadow_cube.wgsl"
 
 struct PointLight {
     position: vec3<f32>,
@@ -22,45 +21,17 @@ var<storage, read> point_lights: array<PointLight>;
 var point_maps: texture_depth_2d_array;
 var point_cubes: texture_depth_cube_array;
 
-// Where a point of the world stands, as its face sees it: metres to the right, down, and along the axis.
-fn point_place(row: u32, face: u32, position: vec3<f32>) -> vec3<f32> {
-    return into_cube_face(face, position - point_lights[row].position);
-}
-
 fn point_receiver(row: u32, position: vec3<f32>, geometric_normal: vec3<f32>) -> ShadowReceiver {
-    let face = cube_face(position - point_lights[row].position);
+    let away = position - point_lights[row].position;
     let size = f32(textureDimensions(point_maps).x);
-    let normal = into_cube_face(face, geometric_normal);
-    let near = point_lights[row].near;
-    var receiver = perspective_receiver(POINT_MAP, row, size, point_place(row, face, position), normal, 1.0, near);
-    receiver.face = face;
-    return receiver;
+    return cube_receiver(POINT_MAP, row, size, away, geometric_normal, point_lights[row].near);
 }
 
-// What a texel holds. It may lie beyond an edge of the face: then the texel of the face that continues there is taken, and seen from the
-// receiver's face.
+// What a texel holds; it may lie beyond an edge of the face.
 fn point_texel(receiver: ShadowReceiver, texel: vec2<f32>) -> ShadowTexel {
-    var face = receiver.face;
-    var inside = texel;
-    let beyond = any(texel < vec2<f32>(0.0)) || any(texel >= vec2<f32>(receiver.size));
-    if beyond {
-        let half_face = 0.5 * receiver.size;
-        let near_by = clamp(texel, vec2<f32>(-half_face), vec2<f32>(receiver.size + half_face));
-        let direction = cube_direction(face, (near_by + 0.5 - map_shift()) * (2.0 / receiver.size) - 1.0);
-        face = cube_face(direction);
-        let there = into_cube_face(face, direction);
-        let place = (there.xy / there.z * 0.5 + 0.5) * receiver.size + map_shift();
-        inside = clamp(floor(place), vec2<f32>(0.0), vec2<f32>(receiver.size - 1.0));
-    }
-    let depth = textureLoad(point_maps, vec2<i32>(inside), receiver.row * 6u + face, 0);
-    var middle = inside + 0.5;
-    var scale = 1.0 / receiver.texel_size;
-    if beyond {
-        let ray = into_cube_face(receiver.face, cube_direction(face, (middle - map_shift()) * (2.0 / receiver.size) - 1.0));
-        middle = (ray.xy / ray.z * 0.5 + 0.5) * receiver.size + map_shift();
-        scale *= ray.z;
-    }
-    return ShadowTexel(middle, select(point_distance(receiver.row, depth) * scale, VERY_FAR, depth >= 1.0));
+    let found = cube_texel(receiver, texel);
+    let depth = textureLoad(point_maps, found.texel, receiver.row * 6u + found.face, 0);
+    return ShadowTexel(found.middle, select(point_distance(receiver.row, depth) * found.scale, VERY_FAR, depth >= 1.0));
 }
 
 // Metres from the light along the face's axis, from what the map holds. The shadow view's depth is far (z - near) / (z (far - near)); in

@@ -34,10 +34,11 @@ const PLANE_BEND: f32 = 1.0 / 32.0;
 const CASCADE_MAP: u32 = 0u;
 const POINT_MAP: u32 = 1u;
 const SPOT_MAP: u32 = 2u;
+const RECTANGLE_MAP: u32 = 3u;
 
 struct ShadowReceiver {
     kind: u32,
-    // Row of the kind's table: `cascades`, `point_lights`, `spot_lights`; for cascades and spots the layer of the map, too.
+    // Row of the kind's table: `cascades`, `point_lights`, `spot_lights`, `rectangle_lights`; for cascades and spots the layer of the map, too.
     row: u32,
     // The face of a cube on which it falls.
     face: u32,
@@ -130,4 +131,27 @@ fn lets_light_through(receiver: ShadowReceiver, texel: ShadowTexel, reach: f32, 
     return texel.occluder >= limit
         || (seen && texel.occluder >= receiver.distance - follow - BIAS)
         || holds_plane(receiver, texel, reach);
+}
+
+// The four texels around the receiver.
+struct NearestFour {
+    visibility: f32,
+    // Whether one of them holds the receiver's plane.
+    seen: bool,
+}
+
+// Each texel is lit or not; they are weighed by nearness, which makes an edge one texel wide. From the upper left one row by row.
+fn compared_four(receiver: ShadowReceiver, a: ShadowTexel, b: ShadowTexel, c: ShadowTexel, d: ShadowTexel) -> NearestFour {
+    let seen = holds_plane(receiver, a, 1.0) || holds_plane(receiver, b, 1.0)
+        || holds_plane(receiver, c, 1.0) || holds_plane(receiver, d, 1.0);
+    let lit = vec4<bool>(
+        lets_light_through(receiver, a, 1.0, seen),
+        lets_light_through(receiver, b, 1.0, seen),
+        lets_light_through(receiver, c, 1.0, seen),
+        lets_light_through(receiver, d, 1.0, seen),
+    );
+    let place = fract(receiver.place - 0.5);
+    let weight_x = vec4<f32>(1.0 - place.x, place.x, 1.0 - place.x, place.x);
+    let weight_y = vec4<f32>(1.0 - place.y, 1.0 - place.y, place.y, place.y);
+    return NearestFour(dot(weight_x * weight_y, select(vec4<f32>(0.0), vec4<f32>(1.0), lit)), seen);
 }

@@ -14,6 +14,7 @@ pub const CASES: &[Case] = &[
     ("area::points of a rectangle have the mean of the whole", points),
     ("area::rough metal reflects what its points say", rough),
     ("area::a floor below a lamp has the closed form", floor),
+    ("area::a screen throws the penumbra of a rectangle", penumbra),
     ("area::a lamp that is hidden, turned away or in the plane gives nothing", dark),
 ];
 
@@ -154,6 +155,54 @@ fn dark() -> Result<(), Failed> {
         let light = texel(&image, 8, 8)[0];
         if (light > 0.0) != lit {
             return Err(format!("{what}: {light}").into());
+        }
+    }
+    Ok(())
+}
+
+/// The form factor of a parallel rectangle for a point below it: `x` and `z` are the ends of the rectangle against the point over its height.
+fn parallel_form_factor(x: [f64; 2], z: [f64; 2]) -> f64 {
+    // From the point's foot to a corner (Siegel and Howell, configuration C-11), with the sign of the corner's place.
+    let corner = |a: f64, b: f64| {
+        let half = |a: f64, b: f64| a / (1.0 + a * a).sqrt() * (b / (1.0 + a * a).sqrt()).atan();
+        (half(a, b) + half(b, a)) / (2.0 * PI)
+    };
+    corner(x[1], z[1]) - corner(x[0], z[1]) - corner(x[1], z[0]) + corner(x[0], z[0])
+}
+
+/// A wide screen below the lamp ends at x = 0: a point of the floor sees the part of the lamp beyond the line through the screen's edge.
+fn penumbra() -> Result<(), Failed> {
+    let (height, screen) = (2.0, 1.0);
+    let scene = format!(
+        "(
+            cameras: {{ \"eye\": (position: (0, 0.9, 0.001), target: (0, 0, 0), fov: 100) }},
+            materials: {{ \"white\": (base_color: (1, 1, 1), specular: 0) }},
+            objects: {{
+                \"floor\": (shape: Plane(size: (20, 20)), material: \"white\"),
+                \"screen\": (shape: Box(size: (10, 0.001, 20)), material: \"white\", translation: (-5, {screen}, 0)),
+            }},
+            lights: {{ \"lamp\": Rectangle(luminance: 5, size: (0.8, 0.8), position: (0, {height}, 0), direction: (0, -1, 0)) }},
+        )"
+    );
+    let expected = |x: f64| {
+        // From the floor over the edge to the lamp's plane.
+        let hidden = (x - x * height / screen).clamp(-0.4, 0.4);
+        5.0 * parallel_form_factor([(hidden - x) / height, (0.4 - x) / height], [-0.4 / height, 0.4 / height])
+    };
+    // Measured: PENUMBRA_MEASURED.
+    for (area_lights, most, most_mean) in [("ltc", 0.05, 0.02), ("sampled", 0.02, 0.005)] {
+        let shot = Shot::pbr(64, &["radiance"]).set("samples", 64).set("area_lights", area_lights).set("local_shadow_texels", 1024);
+        let image = shot.one(&scene)?;
+        let full = expected(0.5);
+        // A pixel's middle, metres.
+        let place = |x: u32| ((f64::from(x) + 0.5) / 32.0 - 1.0) * 0.9 * 50.0_f64.to_radians().tan();
+        let row: Vec<(f64, f64)> = (12..52).map(|x| (texel(&image, x, 32)[0], expected(place(x)))).collect();
+        let worst = row.iter().fold(0.0_f64, |most, (found, expected)| most.max((found - expected).abs())) / full;
+        let mean = row.iter().map(|(found, expected)| found - expected).sum::<f64>().abs() / full / row.len() as f64;
+        println!("{area_lights}: worst {worst:.4}, mean {mean:.4}");
+        let dark = row.iter().filter(|(_, expected)| *expected == 0.0).count();
+        if worst > most || mean > most_mean || dark < 4 {
+            return Err(format!("{area_lights}: worst {worst}, mean {mean} of the brightest, {dark} dark").into());
         }
     }
     Ok(())

@@ -164,6 +164,7 @@ pub(super) fn view(kind: ViewKind) -> String {
         ViewKind::Cascade(cascade) => format!("directional light {}, cascade {}", cascade.light, cascade.index),
         ViewKind::PointLight(light, face) => format!("point light {light}, face {face}"),
         ViewKind::SpotLight(light) => format!("spot light {light}"),
+        ViewKind::RectangleLight(light, face) => format!("rectangle of light {light}, face {face}"),
     }
 }
 

@@ -12,12 +12,12 @@ impl Unroller<'_, '_> {
             View::DirectionalLight(index) => ViewKind::DirectionalLight(self.small(index, "the light of", name)?),
             View::SpotLight(index) => ViewKind::SpotLight(self.small(index, "the light of", name)?),
             View::PointLight(index, face) => {
-                let (light, face_index) = (self.small(index, "the light of", name)?, self.small(face, "the face of", name)?);
-                if face_index > 5 {
-                    let reason = format!("a cube has faces 0 to 5, not {face_index}");
-                    return self.environment.bad(&format!("the face of `{name}`"), reason, face.span);
-                }
-                ViewKind::PointLight(light, face_index)
+                let (light, face) = self.cube_face(index, face, name)?;
+                ViewKind::PointLight(light, face)
+            }
+            View::RectangleLight(index, face) => {
+                let (light, face) = self.cube_face(index, face, name)?;
+                ViewKind::RectangleLight(light, face)
             }
             View::Cascade(cascade) => {
                 let CascadeDecl { light, index, count, distance, lambda, snap } = &**cascade;
@@ -37,6 +37,16 @@ impl Unroller<'_, '_> {
                 ViewKind::Cascade(CascadeView { light: light?, index: at, split })
             }
         })
+    }
+
+    /// A light, and a face of its cube.
+    fn cube_face(&mut self, light: &PlacedExpr, face: &PlacedExpr, name: &str) -> Option<(u32, u32)> {
+        let (light, index) = (self.small(light, "the light of", name)?, self.small(face, "the face of", name)?);
+        if index > 5 {
+            let reason = format!("a cube has faces 0 to 5, not {index}");
+            return self.environment.bad(&format!("the face of `{name}`"), reason, face.span);
+        }
+        Some((light, index))
     }
 
     /// A number from 0 to `most`.

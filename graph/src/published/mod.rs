@@ -152,6 +152,8 @@ pub enum ViewKind {
     PointLight(u32, u32),
     /// The shadow view of a spot light, by its index among those.
     SpotLight(u32),
+    /// A cube face of a rectangle of light, by its index among those, and the face.
+    RectangleLight(u32, u32),
 }
 
 /// Which part of the camera's frustum a view of a directional light is fitted to.

@@ -97,6 +97,10 @@ fn drawn_from(scope: &mut Scope<'_>, view: &ViewDoc) -> Option<View> {
             Some(View::PointLight(index?, face?))
         }
         ViewDoc::SpotLight(index) => scope.expression(index).map(View::SpotLight),
+        ViewDoc::RectangleLight(index, face) => {
+            let (index, face) = (scope.expression(index), scope.expression(face));
+            Some(View::RectangleLight(index?, face?))
+        }
     }
 }
 

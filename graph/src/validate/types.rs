@@ -339,6 +339,7 @@ pub enum View {
     Cascade(Box<CascadeDecl>),
     PointLight(PlacedExpr, PlacedExpr),
     SpotLight(PlacedExpr),
+    RectangleLight(PlacedExpr, PlacedExpr),
 }
 
 /// A part of what the camera sees, along a directional light.

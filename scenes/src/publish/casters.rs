@@ -1,6 +1,7 @@
-//! Which objects each face of a point light's shadow cube sees.
+//! Which objects each face of a shadow cube sees: those of point lights and of rectangles of light.
 //!
-//! An object is seen by a face if its bounds come within the lamp's reach and meet the face's pyramid. Kept from frame to frame: a lamp
+//! An object is seen by a face if its bounds come within the lamp's reach and meet the face's pyramid. The cube of a rectangle may be drawn
+//! from any point of it: bounds are as much larger for it as such a point may be off its middle. Kept from frame to frame: a lamp
 //! that moves asks the spatial index, an object that moves is tested against every lamp. Accepted downside: bounds are boxes, so that
 //! a face may hold an object that it just misses.
 
@@ -11,22 +12,57 @@ use glam::DVec3;
 use luminaire_graph::published::ViewKind;
 
 use super::cube::FACES;
-use super::lights::{Lamp, Lights};
 use super::objects::{Changed, Objects};
 use crate::world::{Aabb, Kind, ObjectSlot, SpatialIndex};
 
-/// What the faces of one lamp see.
+/// What has a shadow cube, by slot among its kind.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) enum Cube {
+    Point(u32),
+    Rectangle(u32),
+}
+
+impl Cube {
+    /// The cube of a view, and which face it is of it.
+    pub(super) fn of(view: ViewKind) -> Option<(Cube, u32)> {
+        match view {
+            ViewKind::PointLight(light, face) => Some((Cube::Point(light), face)),
+            ViewKind::RectangleLight(light, face) => Some((Cube::Rectangle(light), face)),
+            _ => None,
+        }
+    }
+
+    fn face(self, face: u32) -> ViewKind {
+        match self {
+            Cube::Point(light) => ViewKind::PointLight(light, face),
+            Cube::Rectangle(light) => ViewKind::RectangleLight(light, face),
+        }
+    }
+}
+
+/// From where a cube is drawn, metres.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Center {
+    pub(super) position: DVec3,
+    /// It may be drawn from points that are so far off.
+    pub(super) radius: f64,
+    /// Near and far plane of the faces. Nothing beyond the far one throws a shadow.
+    pub(super) planes: [f64; 2],
+}
+
+/// What the faces of one cube see.
 #[derive(Debug)]
 struct Seen {
     position: DVec3,
     reach: f64,
+    radius: f64,
     /// By slot: a bit for each face.
     faces: Vec<u8>,
 }
 
-/// What the faces of all lamps see that draw lists ask for, by slot of the point light.
+/// What the faces of all cubes see that draw lists ask for.
 #[derive(Debug, Default)]
-pub(super) struct Casters(BTreeMap<u32, Seen>);
+pub(super) struct Casters(BTreeMap<Cube, Seen>);
 
 impl Casters {
     /// Takes changed lamps and objects over; returns the faces that see others than before.
@@ -34,41 +70,41 @@ impl Casters {
         &mut self,
         world: &mut World,
         wanted: impl Iterator<Item = ViewKind>,
-        lights: &Lights,
+        center: impl Fn(Cube) -> Option<Center>,
         objects: &Objects,
         changed: &Changed,
-    ) -> BTreeSet<(u32, u32)> {
-        let wanted: BTreeSet<u32> =
-            wanted.filter_map(|view| if let ViewKind::PointLight(lamp, _) = view { Some(lamp) } else { None }).collect();
-        self.0.retain(|lamp, _| wanted.contains(lamp));
+    ) -> BTreeSet<ViewKind> {
+        let wanted: BTreeSet<Cube> = wanted.filter_map(Cube::of).map(|(cube, _)| cube).collect();
+        self.0.retain(|cube, _| wanted.contains(cube));
         let mut others = BTreeSet::new();
-        for light in wanted {
-            let Some(lamp) = lights.point(light) else {
-                let gone = self.0.remove(&light).is_some();
-                others.extend((0..6).filter(|_| gone).map(|face| (light, face)));
+        for cube in wanted {
+            let Some(Center { position, radius, planes: [_, far] }) = center(cube) else {
+                let gone = self.0.remove(&cube).is_some();
+                others.extend((0..6).filter(|_| gone).map(|face| cube.face(face)));
                 continue;
             };
-            let different = match self.0.get_mut(&light) {
-                Some(seen) if seen.position == lamp.position && seen.reach == lamp.reach.casters => {
+            let reach = far + radius;
+            let different = match self.0.get_mut(&cube) {
+                Some(seen) if seen.position == position && seen.reach == reach && seen.radius == radius => {
                     seen.test(objects, changed.slots.iter().copied())
                 }
                 known => {
                     let before = known.map_or_else(Vec::new, |seen| std::mem::take(&mut seen.faces));
-                    let mut seen = Seen { position: lamp.position, reach: lamp.reach.casters, faces: Vec::new() };
-                    seen.test(objects, near(world, &lamp));
+                    let mut seen = Seen { position, reach, radius, faces: Vec::new() };
+                    seen.test(objects, near(world, position, reach));
                     let different = difference(&before, &seen.faces);
-                    self.0.insert(light, seen);
+                    self.0.insert(cube, seen);
                     different
                 }
             };
-            others.extend((0..6).filter(|face| different >> face & 1 == 1).map(|face| (light, face)));
+            others.extend((0..6).filter(|face| different >> face & 1 == 1).map(|face| cube.face(face)));
         }
         others
     }
 
     /// Whether a face sees the object of a slot.
-    pub(super) fn sees(&self, lamp: u32, face: u32, slot: u32) -> bool {
-        self.0.get(&lamp).and_then(|seen| seen.faces.get(slot as usize)).is_some_and(|faces| faces >> face & 1 == 1)
+    pub(super) fn sees(&self, cube: Cube, face: u32, slot: u32) -> bool {
+        self.0.get(&cube).and_then(|seen| seen.faces.get(slot as usize)).is_some_and(|faces| faces >> face & 1 == 1)
     }
 }
 
@@ -78,7 +114,7 @@ impl Seen {
         self.faces.resize(objects.slots().max(self.faces.len()), 0);
         let mut different = 0;
         for slot in slots {
-            let faces = objects.get(slot).map_or(0, |object| faces(object.bounds, self.position, self.reach));
+            let faces = objects.get(slot).map_or(0, |object| faces(grown(object.bounds, self.radius), self.position, self.reach));
             if let Some(known) = self.faces.get_mut(slot as usize) {
                 different |= *known ^ faces;
                 *known = faces;
@@ -88,10 +124,15 @@ impl Seen {
     }
 }
 
-/// The slots of the objects that a lamp may reach.
-fn near(world: &mut World, lamp: &Lamp) -> impl Iterator<Item = u32> {
+/// A box with all that is so near to it.
+fn grown(bounds: Aabb, by: f64) -> Aabb {
+    Aabb { min: bounds.min - by as f32, max: bounds.max + by as f32 }
+}
+
+/// The slots of the objects that come within reach.
+fn near(world: &mut World, position: DVec3, reach: f64) -> impl Iterator<Item = u32> {
     let index = world.get_resource_mut::<SpatialIndex>();
-    let found = index.map(|mut index| index.in_sphere(Kind::Object, lamp.position, lamp.reach.casters));
+    let found = index.map(|mut index| index.in_sphere(Kind::Object, position, reach));
     let world = &*world;
     found.unwrap_or_default().into_iter().filter_map(|entity| world.get::<ObjectSlot>(entity)).map(|slot| slot.0)
 }
@@ -147,6 +188,17 @@ mod tests {
             let bounds = cube(Vec3::from_array(center), half);
             let point = (Vec3::from_array(center) + Vec3::from_array(at) * half).as_dvec3();
             let seen = faces(bounds, DVec3::ZERO, f64::INFINITY);
+            let axis = (0..3).max_by(|a, b| point[*a].abs().total_cmp(&point[*b].abs())).unwrap();
+            let face = 2 * axis + usize::from(point[axis] < 0.0);
+            prop_assert!(seen >> face & 1 == 1, "{:?} on {}: {:b}", point, face, seen);
+        }
+
+        /// Nor does it from another point from where its cube may be drawn.
+        #[test]
+        fn no_face_misses_a_point_from_aside(center in prop::array::uniform3(-9.0_f32..9.0), aside in prop::array::uniform3(-1.0_f32..1.0), radius in 0.01_f32..3.0) {
+            let aside = Vec3::from_array(aside).clamp_length_max(1.0) * radius;
+            let seen = faces(grown(cube(Vec3::from_array(center), 0.1), f64::from(radius)), DVec3::ZERO, f64::INFINITY);
+            let point = (Vec3::from_array(center) - aside).as_dvec3();
             let axis = (0..3).max_by(|a, b| point[*a].abs().total_cmp(&point[*b].abs())).unwrap();
             let face = 2 * axis + usize::from(point[axis] < 0.0);
             prop_assert!(seen >> face & 1 == 1, "{:?} on {}: {:b}", point, face, seen);

@@ -153,7 +153,7 @@ impl Kept {
                     first_instance: slots.len() as u32,
                     instance_count: 1,
                     // The frames of cube faces are left-handed, so the winding turns once more.
-                    mirrored: object.mirrored != matches!(view, ViewKind::PointLight(..)),
+                    mirrored: object.mirrored != matches!(view, ViewKind::PointLight(..) | ViewKind::RectangleLight(..)),
                     double_sided: object.double_sided,
                 }),
             }

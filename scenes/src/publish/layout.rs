@@ -165,7 +165,11 @@ pub struct RectangleRow {
     pub area: f32,
     /// Nits, linear Rec.709, the same in all directions.
     pub radiance: [f32; 3],
-    pub pad: f32,
+    /// Near plane of the faces of its shadow cube, metres.
+    pub near: f32,
+    /// Far plane of the faces, metres; 0 where there is no light.
+    pub far: f32,
+    pub pad: [f32; 3],
 }
 
 /// An element of `instances`.

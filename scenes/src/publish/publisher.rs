@@ -9,6 +9,7 @@ use indexmap::IndexMap;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{CascadeView, PublishedScene, Table, ViewKind};
 
+use super::casters::{Center, Cube};
 use super::draws::{Distance, DrawInput, Draws};
 use super::frustum::Frustum;
 use super::geometry::{self, Geometry};
@@ -66,7 +67,8 @@ impl Publisher {
         (self.seen, self.materials) = (Some((world.id(), world.last_change_tick())), of_materials);
         let bounds = self.objects.bounds;
         let lights = lights::collect(world, bounds, self.objects.solid_bounds);
-        problems.extend(request::check(request, &lights));
+        let rectangles = rectangles::rows(world, self.objects.solid_bounds);
+        problems.extend(request::check(request, &lights, rectangles.len()));
         let pose = camera_pose(world, request.camera, bounds, request.aspect()).map_err(|problem| problems.push(problem)).ok();
 
         let wanted = request.draw_lists;
@@ -86,24 +88,32 @@ impl Publisher {
                 maps.filter_map(|(_, map)| map.as_ref().map(|map| map.casters.clone())).collect()
             }
             ViewKind::SpotLight(light) => lights.spot(light).map(|lamp| SpotView::of(&lamp).casters).into_iter().collect(),
-            ViewKind::Camera | ViewKind::PointLight(..) => vec![Frustum::of_camera(&camera)],
+            ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::RectangleLight(..) => vec![Frustum::of_camera(&camera)],
         };
-        let views = self.visible.update(world, &wanted.iter().map(|(_, view)| *view).collect(), frusta, &lights, &self.objects, &changed);
+        let center = |cube| match cube {
+            Cube::Point(light) => {
+                lights.point(light).map(|lamp| Center { position: lamp.position, radius: 0.0, planes: lamp.reach.planes })
+            }
+            Cube::Rectangle(light) => rectangles::center(&rectangles, light),
+        };
+        let views = self.visible.update(world, &wanted.iter().map(|(_, view)| *view).collect(), frusta, center, &self.objects, &changed);
         let (visible, ranges) = (&self.visible, &self.geometry.ranges);
         let input = DrawInput { objects: &self.objects, changed: &changed, ranges, visible, views: &views };
         let draw_lists = self.draws.update(wanted, &input, |view| match view {
             ViewKind::Camera => Distance::from_camera(&camera),
             ViewKind::DirectionalLight(light) | ViewKind::Cascade(CascadeView { light, .. }) => Distance::Along(-lights.to_sun(light)),
-            ViewKind::PointLight(light, _) => Distance::From(lights.point(light).map_or(DVec3::ZERO, |lamp| lamp.position)),
+            ViewKind::PointLight(light, _) => Distance::From(center(Cube::Point(light)).map_or(DVec3::ZERO, |center| center.position)),
+            ViewKind::RectangleLight(light, _) => {
+                Distance::From(center(Cube::Rectangle(light)).map_or(DVec3::ZERO, |center| center.position))
+            }
             ViewKind::SpotLight(light) => Distance::From(lights.spot(light).map_or(DVec3::ZERO, |lamp| lamp.position)),
         });
         let view_bytes = |(view, sun): (_, &Option<SunView>)| {
-            let table = sun.as_ref().map_or_else(|| request::view_table(view, &camera, &lights), |sun| sun.table);
+            let table = sun.as_ref().map_or_else(|| request::view_table(view, &camera, &lights, &rectangles), |sun| sun.table);
             bytemuck::bytes_of(&table).to_vec()
         };
         let views = request.views.iter().zip(&suns).map(view_bytes).collect();
         let environment = *world.get_resource_or_init::<Environment>();
-        let rectangles = rectangles::rows(world);
         let (sky_image, sky) = self.sky.update(world, request.max_texture_2d);
         let environment = environment::table(environment, &lights, rectangles.len(), sky, &materials, bounds);
         self.set("camera", &[camera.table()]);

@@ -12,9 +12,7 @@ use crate::world::Aabb;
 pub(super) struct Reach {
     /// Beyond this it gives nothing; 0 is no end, or a range that ends it.
     pub(super) end: f64,
-    /// Nothing beyond this throws a shadow.
-    pub(super) casters: f64,
-    /// Near and far plane of its shadow views.
+    /// Near and far plane of its shadow views. Nothing beyond the far one throws a shadow.
     pub(super) planes: [f64; 2],
 }
 
@@ -27,7 +25,12 @@ pub(super) fn reach(position: DVec3, intensity: Vec3, range: Option<f32>, least:
     let fading = if end > 0.0 { round_up(end) } else { f64::INFINITY };
     let limit = range.map_or(fading, f64::from);
     let planes = planes(farthest(solid), limit);
-    Reach { end, casters: planes[1], planes }
+    Reach { end, planes }
+}
+
+/// Near and far plane of shadow views from whatever point within `radius` of a position, for a light that has no end.
+pub(super) fn endless_planes(position: DVec3, radius: f64, solid: Option<Aabb>) -> [f64; 2] {
+    planes(solid.map_or(0.0, |bounds| bounds.farthest(position)) + radius, f64::INFINITY)
 }
 
 /// Far is the farthest caster or the limit, if that is nearer, and a hundredth more. Near is 1 cm, or a thousandth of far if
@@ -67,7 +70,7 @@ mod tests {
             assert!(0.0 < near && near < far && far.is_finite(), "{size} {range:?}: {near} {far}");
         }
         let reach = reach(DVec3::ZERO, Vec3::ONE, Some(2.0), 0.001, scene(10.0), scene(10.0));
-        assert_eq!((reach.planes[1], reach.casters), (2.02, 2.02));
+        assert_eq!(reach.planes[1], 2.02);
     }
 
     #[test]

@@ -4,21 +4,31 @@
 use bevy_ecs::prelude::World;
 use glam::Vec3;
 
+use super::casters::Center;
 use super::layout::RectangleRow;
 use super::lights::{place, strength};
-use crate::world::{GlobalTransform, RectangleLight, RectangleSlot, Shown};
+use super::projection::single;
+use super::reach::endless_planes;
+use crate::world::{Aabb, GlobalTransform, RectangleLight, RectangleSlot, Shown};
 
-/// The table `rectangle_lights`. What is not finite gives no light.
-pub(super) fn rows(world: &mut World) -> Vec<RectangleRow> {
+/// The table `rectangle_lights`. What is not finite gives no light. `solid` are the bounds of what throws shadows.
+pub(super) fn rows(world: &mut World, solid: Option<Aabb>) -> Vec<RectangleRow> {
     let mut rectangles: Vec<Option<RectangleRow>> = Vec::new();
     for (light, slot, transform, shown) in world.query::<(&RectangleLight, &RectangleSlot, &GlobalTransform, &Shown)>().iter(world) {
-        place(&mut rectangles, slot.0, Some(row(light, transform)).filter(|_| shown.0));
+        place(&mut rectangles, slot.0, Some(row(light, transform, solid)).filter(|_| shown.0));
     }
     rectangles.into_iter().map(|row| row.unwrap_or_else(bytemuck::Zeroable::zeroed)).collect()
 }
 
+/// From where the shadow cube of a rectangle is drawn: from its middle, or from any other point of it. `None` if it gives no light.
+pub(super) fn center(rows: &[RectangleRow], slot: u32) -> Option<Center> {
+    let row = rows.get(slot as usize).filter(|row| row.area > 0.0)?;
+    let [near, far] = [row.near, row.far].map(f64::from);
+    Some(Center { position: Vec3::from(row.position).as_dvec3(), radius: f64::from(row.radius), planes: [near, far] })
+}
+
 /// A rectangle is stretched as its mesh is, and keeps its luminance. One that a transform mirrors faces where its mesh does.
-fn row(light: &RectangleLight, transform: &GlobalTransform) -> RectangleRow {
+fn row(light: &RectangleLight, transform: &GlobalTransform, solid: Option<Aabb>) -> RectangleRow {
     let none = <RectangleRow as bytemuck::Zeroable>::zeroed();
     let axes = transform.0.matrix3;
     let turn = if axes.determinant() < 0.0 { 1.0 } else { -1.0 };
@@ -30,6 +40,7 @@ fn row(light: &RectangleLight, transform: &GlobalTransform) -> RectangleRow {
     if !position.is_finite() || !radius.is_finite() || !area.is_normal() {
         return none;
     }
+    let [near, far] = endless_planes(position.as_dvec3(), f64::from(radius), solid).map(single);
     RectangleRow {
         position: position.to_array(),
         two_sided: u32::from(light.two_sided),
@@ -38,6 +49,8 @@ fn row(light: &RectangleLight, transform: &GlobalTransform) -> RectangleRow {
         half_height: half_height.to_array(),
         area,
         radiance: strength(light.color, light.luminance).to_array(),
+        near,
+        far,
         ..none
     }
 }
@@ -52,7 +65,7 @@ mod tests {
         RectangleLight { color: Vec3::new(1.0, 0.5, 0.25), luminance: 8.0, size: Vec2::new(4.0, 2.0), two_sided: false };
 
     fn row_at(axes: Mat3) -> RectangleRow {
-        row(&LIGHT, &GlobalTransform(Affine3A::from_mat3_translation(axes, Vec3::new(1.0, 2.0, 3.0))))
+        row(&LIGHT, &GlobalTransform(Affine3A::from_mat3_translation(axes, Vec3::new(1.0, 2.0, 3.0))), None)
     }
 
     fn front(row: &RectangleRow) -> Vec3 {
@@ -78,7 +91,7 @@ mod tests {
             let row = row_at(axes);
             assert_eq!((row.area, row.radiance), (0.0, [0.0; 3]), "{axes}");
         }
-        let dim = row(&RectangleLight { luminance: f32::NAN, ..LIGHT }, &GlobalTransform(Affine3A::IDENTITY));
+        let dim = row(&RectangleLight { luminance: f32::NAN, ..LIGHT }, &GlobalTransform(Affine3A::IDENTITY), None);
         assert_eq!((dim.area, dim.radiance), (8.0, [0.0; 3]));
     }
 }

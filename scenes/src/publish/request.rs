@@ -3,12 +3,12 @@
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{DrawFilter, PublishedScene, ViewKind, ViewRequest};
 
-use super::cube;
-use super::layout::ViewTable;
+use super::layout::{RectangleRow, ViewTable};
 use super::lights::Lights;
 use super::projection::CameraView;
 use super::spot::SpotView;
 use super::sun::{self, SunView};
+use super::{cube, rectangles};
 use crate::world::Aabb;
 
 /// Everything that a plan needs of a scene.
@@ -43,7 +43,7 @@ pub struct Published {
 }
 
 /// Whether the lights and faces that are asked for exist.
-pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights) -> Vec<Diagnostic> {
+pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights, rectangles: usize) -> Vec<Diagnostic> {
     let mut kinds: Vec<ViewKind> = request.views.iter().map(|view| view.kind).chain(request.draw_lists.iter().map(|list| list.1)).collect();
     kinds.sort_unstable();
     kinds.dedup();
@@ -61,12 +61,13 @@ pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights) -> Vec<Diagno
                 ViewKind::Cascade(cascade) => ("directional", cascade.light, lights.suns.len()),
                 ViewKind::PointLight(light, _) => ("point", light, cubes),
                 ViewKind::SpotLight(light) => ("spot", light, maps),
+                ViewKind::RectangleLight(light, _) => ("rectangle", light, rectangles),
             };
             match *kind {
                 _ if light as usize >= count => Some(unknown(name, light, count)),
-                ViewKind::PointLight(light, face) if face > 5 => Some(Diagnostic::error(
+                ViewKind::PointLight(_, face) | ViewKind::RectangleLight(_, face) if face > 5 => Some(Diagnostic::error(
                     "publish::unknown-face",
-                    format!("a view asks for face {face} of point light {light}; a cube has the faces 0 to 5"),
+                    format!("a view asks for face {face} of {name} light {light}; a cube has the faces 0 to 5"),
                 )),
                 _ => None,
             }
@@ -92,16 +93,19 @@ pub(super) fn sun_view(view: &ViewRequest, camera: &CameraView, lights: &Lights,
     match view.kind {
         ViewKind::DirectionalLight(light) => Some(sun::fit(lights.to_sun(light), camera, bounds, texels)),
         ViewKind::Cascade(cascade) => Some(sun::fit_cascade(lights.to_sun(cascade.light), camera, bounds, cascade, texels)),
-        ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::SpotLight(_) => None,
+        ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::SpotLight(_) | ViewKind::RectangleLight(..) => None,
     }
 }
 
 /// The table of a view that is no directional light's; zero where a light is not there, since nothing is drawn then.
-pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights) -> ViewTable {
+pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights, rectangles: &[RectangleRow]) -> ViewTable {
     let table = match view.kind {
         ViewKind::Camera | ViewKind::DirectionalLight(_) | ViewKind::Cascade(_) => Some(camera.view()),
         ViewKind::PointLight(light, face) => lights.point(light).map(|lamp| cube::face_view(lamp.position, lamp.reach.planes, face)),
         ViewKind::SpotLight(light) => lights.spot(light).map(|lamp| SpotView::of(&lamp).table),
+        ViewKind::RectangleLight(light, face) => {
+            rectangles::center(rectangles, light).map(|center| cube::face_view(center.position, center.planes, face))
+        }
     };
     table.unwrap_or_else(bytemuck::Zeroable::zeroed)
 }

@@ -155,6 +155,8 @@ pub fn schema() -> PublishedSchema {
             half_height: "vec3<f32>",
             area: "f32",
             radiance: "vec3<f32>",
+            near: "f32",
+            far: "f32",
         }),
     );
     add(
@@ -268,7 +270,7 @@ mod tests {
             ("local_lights", 64),
             ("point_lights", 32),
             ("spot_lights", 80),
-            ("rectangle_lights", 64),
+            ("rectangle_lights", 80),
             ("instances", 128),
             ("instance_slots", 4),
             ("materials", 304),

@@ -2,7 +2,7 @@
 
 use bevy_ecs::prelude::{Entity, World};
 use bytemuck::Pod;
-use glam::{Affine3A, Mat4, Quat, Vec3};
+use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{CascadeSplit, CascadeView, DrawBatch, DrawFilter, Positive, TableKind, ViewKind, ViewRequest};
 
@@ -10,7 +10,8 @@ use super::*;
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
 use crate::world::{
-    Camera, ChildOf, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, Transform, new_world,
+    Camera, ChildOf, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, RectangleLight, Transform,
+    new_world,
     set_translation,
 };
 
@@ -44,6 +45,12 @@ fn stage() -> World {
 fn place(world: &mut World, mesh: usize, material: usize, at: Vec3, scale: Vec3) {
     let transform = Affine3A::from_scale_rotation_translation(scale, Quat::IDENTITY, at);
     world.spawn((Transform(transform), MeshInstance { mesh, material }));
+}
+
+/// A rectangle of light that faces down.
+fn panel(at: Vec3) -> (Transform, RectangleLight) {
+    let light = RectangleLight { color: Vec3::ONE, luminance: 5.0, size: Vec2::new(2.0, 1.0), two_sided: false };
+    (Transform(Affine3A::from_rotation_translation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2), at)), light)
 }
 
 /// What somebody publishes who has published nothing before.
@@ -273,15 +280,39 @@ fn cascades_are_rows_by_light_and_index() {
     assert_eq!(problems.iter().map(|problem| problem.code).collect::<Vec<_>>(), ["publish::mixed-cascades"]);
 }
 
+/// The cube of a rectangle is drawn from its middle or from whatever point of it: a box is below the middle, and beside a corner. The lamp of the
+/// stage is at the same place.
+#[test]
+fn faces_of_a_rectangle_see_what_any_point_of_it_sees() {
+    let mut world = stage();
+    world.spawn(panel(Vec3::Y * 3.0));
+    place(&mut world, 0, 0, Vec3::new(0.8, 1.5, 0.0), Vec3::splat(0.2));
+    let kinds = [ViewKind::PointLight, ViewKind::RectangleLight];
+    let lists: Vec<(DrawFilter, ViewKind)> =
+        kinds.iter().flat_map(|kind| (0..6).map(move |face| (DrawFilter::Opaque, kind(0, face)))).collect();
+    let views = [ViewRequest { kind: ViewKind::RectangleLight(0, 3), width: 64, height: 64 }];
+    let published = publish(&mut world, &request(&views, &lists)).unwrap();
+    let seen: Vec<bool> = published.scene.draw_lists.iter().map(|list| !list.batches.is_empty()).collect();
+    assert_eq!(seen[..6], [false, false, false, true, false, false]);
+    assert_eq!(seen[6..], [true, true, false, true, true, true]);
+    let rows: Vec<RectangleRow> = table_rows(&published, "rectangle_lights");
+    let view: ViewTable = bytemuck::pod_read_unaligned(&published.scene.views[0]);
+    assert_eq!((view.position, view.near, view.far), (rows[0].position, rows[0].near, rows[0].far));
+    assert!(rows[0].near > 0.0 && f64::from(rows[0].far) > 2.3 + f64::from(rows[0].radius));
+}
+
 #[test]
 fn what_is_not_there_is_reported_at_once() {
-    let views =
-        [ViewRequest { kind: ViewKind::DirectionalLight(3), ..SUN_VIEW }, ViewRequest { kind: ViewKind::PointLight(0, 6), ..SUN_VIEW }];
+    let missing = [ViewKind::DirectionalLight(3), ViewKind::PointLight(0, 6), ViewKind::RectangleLight(0, 6), ViewKind::RectangleLight(1, 0)];
+    let views = missing.map(|kind| ViewRequest { kind, ..SUN_VIEW });
     let wanted = PublishRequest { camera: Some("mian"), ..request(&views, &[(DrawFilter::All, ViewKind::PointLight(9, 0))]) };
-    let problems = publish(&mut stage(), &wanted).unwrap_err();
+    let mut world = stage();
+    world.spawn(panel(Vec3::Y));
+    let problems = publish(&mut world, &wanted).unwrap_err();
     let codes: Vec<&str> = problems.iter().map(|problem| problem.code).collect();
-    assert_eq!(codes, ["publish::unknown-light", "publish::unknown-face", "publish::unknown-light", "world::unknown-camera"]);
-    assert_eq!(problems[3].hint.as_deref(), Some("did you mean `main`?"));
+    let [light, face] = ["publish::unknown-light", "publish::unknown-face"];
+    assert_eq!(codes, [light, face, light, face, light, "world::unknown-camera"]);
+    assert_eq!(problems[5].hint.as_deref(), Some("did you mean `main`?"));
 }
 
 #[test]
@@ -402,13 +433,15 @@ mod memory {
             let split = CascadeSplit { count: 2, distance: Positive::new(9.0), lambda: Positive::new(0.5), snap: true };
             let cascades = [0, 1].map(|index| ViewKind::Cascade(CascadeView { light: 0, index, split }));
             let lamp = |face| ViewKind::PointLight(0, face);
+            world.spawn(panel(Vec3::new(1.0, 3.0, 1.0)));
             let mut lists: Vec<(DrawFilter, ViewKind)> = (0..6).map(|face| (DrawFilter::Opaque, lamp(face))).collect();
             lists.extend((0..6).map(|face| (DrawFilter::Masked, lamp(face))));
+            lists.extend((0..6).map(|face| (DrawFilter::Opaque, ViewKind::RectangleLight(0, face))));
             let views = [(DrawFilter::Solid, ViewKind::Camera), (DrawFilter::Opaque, ViewKind::DirectionalLight(0)), (DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, lamp(2))];
             lists.extend(views);
             lists.extend([ViewKind::SpotLight(0), cascades[0], cascades[1]].map(|view| (DrawFilter::Opaque, view)));
             let maps = cascades.map(|kind| ViewRequest { kind, ..SUN_VIEW });
-            let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::SpotLight(0), ..SUN_VIEW }, maps[0], maps[1]];
+            let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::SpotLight(0), ..SUN_VIEW }, ViewRequest { kind: ViewKind::RectangleLight(0, 3), ..SUN_VIEW }, maps[0], maps[1]];
             let wanted = request(&views, &lists);
             let (mut publisher, mut things) = (Publisher::default(), Vec::new());
             for changes in steps {

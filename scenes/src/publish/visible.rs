@@ -1,4 +1,5 @@
-//! Which objects each view sees: the camera, directional lights and spots by their frusta, the faces of a lamp's cube as its [`Casters`].
+//! Which objects each view sees: the camera, directional lights and spots by their frusta, the faces of
+//! cubes as their [`Casters`].
 //!
 //! Kept from frame to frame: a view that stands still tests objects that changed, one that moves tests all.
 
@@ -7,9 +8,8 @@ use std::collections::{BTreeMap, BTreeSet};
 use bevy_ecs::prelude::World;
 use luminaire_graph::published::ViewKind;
 
-use super::casters::Casters;
+use super::casters::{Casters, Center, Cube};
 use super::frustum::Frustum;
-use super::lights::Lights;
 use super::objects::{Changed, Objects};
 
 /// What all views see that draw lists ask for.
@@ -35,14 +35,13 @@ impl Visible {
         world: &mut World,
         wanted: &BTreeSet<ViewKind>,
         frusta: impl Fn(ViewKind) -> Vec<Frustum>,
-        lights: &Lights,
+        center: impl Fn(Cube) -> Option<Center>,
         objects: &Objects,
         changed: &Changed,
     ) -> BTreeSet<ViewKind> {
-        let faces = self.casters.update(world, wanted.iter().copied(), lights, objects, changed);
-        let mut others: BTreeSet<ViewKind> = faces.into_iter().map(|(lamp, face)| ViewKind::PointLight(lamp, face)).collect();
+        let mut others = self.casters.update(world, wanted.iter().copied(), center, objects, changed);
         self.in_view.retain(|view, _| wanted.contains(view));
-        for view in wanted.iter().filter(|view| !matches!(view, ViewKind::PointLight(..))) {
+        for view in wanted.iter().filter(|view| Cube::of(**view).is_none()) {
             let frusta = frusta(*view);
             let known = self.in_view.entry(*view).or_default();
             let different = if known.frusta == frusta {
@@ -58,9 +57,9 @@ impl Visible {
 
     /// Whether a view sees the object of a slot.
     pub(super) fn sees(&self, view: ViewKind, slot: u32) -> bool {
-        match view {
-            ViewKind::PointLight(lamp, face) => self.casters.sees(lamp, face, slot),
-            _ => self.in_view.get(&view).and_then(|known| known.seen.get(slot as usize)).copied().unwrap_or(false),
+        match Cube::of(view) {
+            Some((cube, face)) => self.casters.sees(cube, face, slot),
+            None => self.in_view.get(&view).and_then(|known| known.seen.get(slot as usize)).copied().unwrap_or(false),
         }
     }
 }

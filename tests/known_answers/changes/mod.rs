@@ -62,6 +62,7 @@ fn passes(ran: &[&str]) -> Vec<String> {
         let map = match (pass.split('.').next(), numbers.as_slice()) {
             (Some("point_shadows"), [face]) => Some((("lamp", face / 6), face % 6)),
             (Some("spot_shadows"), [spot]) => Some((("spot", *spot), 0)),
+            (Some("rectangle_shadows"), [face]) => Some((("rectangle", face / 6), face % 6)),
             (Some("sun_shadows"), [sun, cascade]) => Some((("sun", *sun), *cascade)),
             _ => None,
         };

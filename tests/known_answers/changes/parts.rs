@@ -81,5 +81,6 @@ fn view_name(view: ViewKind) -> String {
         ViewKind::Cascade(cascade) => format!("sun {} cascade {}", cascade.light, cascade.index),
         ViewKind::PointLight(light, face) => format!("lamp {light} face {face}"),
         ViewKind::SpotLight(light) => format!("spot {light}"),
+        ViewKind::RectangleLight(light, face) => format!("rectangle {light} face {face}"),
     }
 }

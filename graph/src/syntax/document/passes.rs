@@ -50,6 +50,8 @@ pub enum ViewDoc {
     PointLight(Expr, Expr),
     /// The perspective shadow view of a spot light, by its index among them.
     SpotLight(Expr),
+    /// One cube face of a rectangle of light, from its middle: its index among them, and the face.
+    RectangleLight(Expr, Expr),
 }
 
 /// Depth test and write of a Draw or Fullscreen.
