@@ -1,5 +1,5 @@
 #!/bin/sh
-# Makes the sheets of the timelines in this folder: frames of a scene, then some of them side by side.
+# Makes the sheets in this folder: frames of timelines, and every kind of light and shadow, side by side.
 #
 #     cargo build --release && docs/sheets.sh
 #
@@ -31,3 +31,30 @@ sheet pbr day_night 0.5 4 0 2 4 5 6 8 10 11
 sheet pbr wall_removed 5 3 9 10 11 12 14 21
 sheet pbr spawned 1 4 0 1 2 3 4 5 6 7
 sheet sky sun_path 8 4 0 80 119 128
+
+# still NAME PIPELINE SCENE OPTION...: one picture.
+still() {
+    name="$1" pipeline="$2" scene="$3"
+    shift 3
+    "$luminaire" render "pipelines/$pipeline.ron" --scene "scenes/$scene.ron" --size 640x360 "$@" -o "$frames/$name.png"
+    stills="$stills $frames/$name.png"
+}
+
+# Lights: directional, point, spot, rectangle, emissive, the physical sky in the morning and in the evening, all of a scene together.
+# Shadows: cascades and what each of them covers, a cube, a spot's map; the filters hardware, pcf3, poisson and pcss.
+stills=""
+for second in 0 1 2 3 4; do
+    still "light$second" pbr light_kinds --time "$second" --set samples=16 --set shadow_filter=pcss
+done
+still morning pbr day --time 1.2 --set sky=physical --set samples=16
+still evening pbr day --time 11.4 --set sky=physical --set samples=16
+still together pbr shadows --set samples=16
+still cascades shadow shadows --camera fence --set light=directional
+still covered shadow shadows --camera fence --set light=directional --output cascades
+still cube shadow shadows --set light=point
+still map shadow shadows --set light=spot
+for filter in hardware pcf3 poisson pcss; do
+    still "$filter" shadow shadows --set light=spot --set "shadow_filter=$filter" --set light_radius=0.15 --set local_shadow_texels=256
+done
+# shellcheck disable=SC2086 # One word for each image.
+"$luminaire" sheet $stills --columns 4 --shrink 2 -o docs/lights_and_shadows.png

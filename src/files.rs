@@ -16,13 +16,16 @@ static SHADERS: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/shaders");
 /// Scene files; a test checks that none is missing here.
 static SCENES: &[(&str, &str)] = &[
     ("cornell.ron", include_str!("../scenes/cornell.ron")),
+    ("day.ron", include_str!("../scenes/day.ron")),
     ("day_night.ron", include_str!("../scenes/day_night.ron")),
     ("hall.ron", include_str!("../scenes/hall.ron")),
+    ("light_kinds.ron", include_str!("../scenes/light_kinds.ron")),
     ("materials.ron", include_str!("../scenes/materials.ron")),
     ("probe_grid.ron", include_str!("../scenes/probe_grid.ron")),
     ("room.ron", include_str!("../scenes/room.ron")),
     ("scene1.ron", include_str!("../scenes/scene1.ron")),
     ("scene2.ron", include_str!("../scenes/scene2.ron")),
+    ("shadows.ron", include_str!("../scenes/shadows.ron")),
     ("spawned.ron", include_str!("../scenes/spawned.ron")),
     ("sun_path.ron", include_str!("../scenes/sun_path.ron")),
     ("wall_removed.ron", include_str!("../scenes/wall_removed.ron")),

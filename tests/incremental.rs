@@ -64,7 +64,7 @@ fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
         _ => false,
     };
     assert!(harness.change(from_camera) > 0);
-    assert_eq!(harness.frame(), ["gbuffer", "light", "compose", "transparent", "display.expose"]);
+    assert_eq!(harness.frame(), ["gbuffer", "light", "skybox.sky", "compose", "transparent", "display.expose"]);
 }
 
 #[test]

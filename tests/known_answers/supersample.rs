@@ -119,7 +119,7 @@ fn a_sample_runs_what_the_shift_reaches() -> Result<(), Failed> {
     let shot = Shot::pbr(16, &["color"]).set("samples", 3);
     let mut session = shot.session(&mut world(&lit())?)?;
     let frames = settle(&mut session)?;
-    let sample = ["supersample.jitter", "gbuffer", "light", "compose", "transparent", "supersample.gather", "display.expose"];
+    let sample = ["supersample.jitter", "gbuffer", "light", "skybox.sky", "compose", "transparent", "supersample.gather", "display.expose"];
     let of_the_camera = |frame: &[String]| -> Vec<String> { frame.iter().filter(|pass| !pass.starts_with("previous")).cloned().collect() };
     // In the last one nothing is left to do but to remember the mean.
     let [first, second, third, _] = &frames[..] else { return Err(format!("{} frames", frames.len()).into()) };

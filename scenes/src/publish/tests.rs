@@ -10,9 +10,8 @@ use super::*;
 use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
 use crate::world::{
-    Camera, ChildOf, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, RectangleLight, Transform,
-    new_world,
-    set_translation,
+    Camera, ChildOf, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, RectangleLight,
+    Transform, new_world, set_translation,
 };
 
 const CAMERA_VIEW: ViewRequest = ViewRequest { kind: ViewKind::Camera, width: 64, height: 48 };
@@ -303,7 +302,8 @@ fn faces_of_a_rectangle_see_what_any_point_of_it_sees() {
 
 #[test]
 fn what_is_not_there_is_reported_at_once() {
-    let missing = [ViewKind::DirectionalLight(3), ViewKind::PointLight(0, 6), ViewKind::RectangleLight(0, 6), ViewKind::RectangleLight(1, 0)];
+    let missing =
+        [ViewKind::DirectionalLight(3), ViewKind::PointLight(0, 6), ViewKind::RectangleLight(0, 6), ViewKind::RectangleLight(1, 0)];
     let views = missing.map(|kind| ViewRequest { kind, ..SUN_VIEW });
     let wanted = PublishRequest { camera: Some("mian"), ..request(&views, &[(DrawFilter::All, ViewKind::PointLight(9, 0))]) };
     let mut world = stage();
