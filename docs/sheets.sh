@@ -44,17 +44,17 @@ still() {
 # Shadows: cascades and what each of them covers, a cube, a spot's map; the filters hardware, pcf3, poisson and pcss.
 stills=""
 for second in 0 1 2 3 4; do
-    still "light$second" pbr light_kinds --time "$second" --set samples=16 --set shadow_filter=pcss
+    still "light$second" pbr light_kinds --time "$second" --set samples=4 --set light_radius=0.05 --set shadow_filter=pcss
 done
-still morning pbr day --time 1.2 --set sky=physical --set samples=16
-still evening pbr day --time 11.4 --set sky=physical --set samples=16
-still together pbr shadows --set samples=16
+still morning pbr day --time 1.2 --set sky=physical --set samples=4
+still evening pbr day --time 11.4 --set sky=physical --set samples=4
+still together pbr shadows --set samples=4
 still cascades shadow shadows --camera fence --set light=directional
 still covered shadow shadows --camera fence --set light=directional --output cascades
-still cube shadow shadows --set light=point
-still map shadow shadows --set light=spot
+still cube shadow shadows --set light=point --set exposure=1.5
+still map shadow shadows --set light=spot --set exposure=2.5
 for filter in hardware pcf3 poisson pcss; do
-    still "$filter" shadow shadows --set light=spot --set "shadow_filter=$filter" --set light_radius=0.15 --set local_shadow_texels=256
+    still "$filter" pbr light_kinds --time 1 --set "shadow_filter=$filter" --set light_radius=0.1 --set local_shadow_texels=256 --set samples=4
 done
 # shellcheck disable=SC2086 # One word for each image.
 "$luminaire" sheet $stills --columns 4 --shrink 2 -o docs/lights_and_shadows.png

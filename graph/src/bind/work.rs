@@ -44,7 +44,7 @@ pub(super) fn check_procedural(pass: &Pass, vertex: &EntryPoint, vertices: u32, 
         let hint = Some("make it from `@builtin(vertex_index)`, or draw the scene's surfaces with a Draw".to_owned());
         problems.push(BindError::Target { pass: pass.name.clone(), reason, hint, span: input.span });
     }
-    if vertices % 3 != 0 {
+    if !vertices.is_multiple_of(3) {
         let reason = format!("it has {vertices} vertices, and triangles have three each");
         let hint = Some("make `vertices` a multiple of 3".to_owned());
         problems.push(BindError::Work { pass: pass.name.clone(), reason, hint, span: pass.span });
