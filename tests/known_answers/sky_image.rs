@@ -42,7 +42,7 @@ fn directions() -> Result<(), Failed> {
     let mut worst = 0.0_f64;
     // The axes, the seam at -X among them, the horizon between, and both poles.
     let targets =
-        [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [-1.0, 0.4, 0.05], [1e-4, 1.0, 0.0], [0.0, -1.0, 1e-4]];
+        [[1.0, 0.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0], [0.0, 0.0, -1.0], [-1.0, 0.4, 0.05], [0.05, 1.0, 0.0], [0.0, -1.0, 0.05]];
     for (target, turn) in targets.into_iter().map(|target| (target, 0.0)).chain([([-1.0, 0.0, 0.0], 90.0), ([0.3, 0.2, 1.0], -30.0)]) {
         let eye = Eye::new([0.0; 3], target, 70.0);
         let text = format!("({} environment: (image: \"directions.exr\", rotation: {turn}))", eye.ron());
@@ -55,7 +55,7 @@ fn directions() -> Result<(), Failed> {
             let found = texel(image, x, y);
             let apart = (DVec3::new(found[0], found[1], found[2]) - expected).abs().max_element();
             worst = worst.max(apart);
-            // Measured: WORST, where the outermost rows end short of the poles by half a texel.
+            // The outermost rows end half a texel short of the poles: sin(pi / 256) / 2 = 0.0061. Half floats: 0.0005.
             if apart > 0.008 {
                 return Err(format!("towards {target:?}, turned by {turn}: {found:?} at {x}, {y}, not {expected}").into());
             }
