@@ -2,9 +2,9 @@
 // on the light an occluder lies is asked as Guennebaud, Barthe and Paulin 2006 do, "Real-time Soft Shadow Mapping by Backprojection").
 //
 // The ray from a surface to a point of the rectangle, `aside` of its middle, runs before the map along the directions
-// `away + s aside`, where `away` is the way from the middle to the surface and s grows from 0 at the surface. What a texel holds is on that
-// ray if its own s, which follows from its distance, is the one where it was found. First a search finds which s there are, then rays
-// to points of the rectangle look for something among those.
+// `away + s aside`, where `away` is the way from the middle to the surface and s grows from 0 at the surface. What a texel holds has an s
+// of its own, which follows from its distance. A ray runs behind what has a greater one than the place where it is found, and meets the
+// surface where both are the same. First a search finds which s there are, then rays to points of the rectangle are followed through those.
 //
 // Accepted: what the middle does not see, since something else is before it, blocks nothing; points count alike, however much light comes
 // from each.
@@ -13,10 +13,16 @@
 #import "shared/shadow_rectangle.wgsl"
 #import "shared/surface_point.wgsl"
 
-// Texels that the search looks at, rays to points of the rectangle, and how many places each of these looks at.
-const SEARCHED: u32 = 48u;
+// Texels that the search looks at, rays to points of the rectangle, and how many steps each of these takes.
+const SEARCHED: u32 = 96u;
 const RAYS: u32 = 16u;
-const STEPS: u32 = 4u;
+const STEPS: u32 = 5u;
+// How often the place is halved where a ray comes out from behind something.
+const HALVINGS: u32 = 5u;
+// What the search found, and so much more.
+const MARGIN: f32 = 1.2;
+// A surface does not come nearer by more than this factor from one place to the next.
+const EVENLY: f32 = 1.5;
 // Nothing nearer to the rectangle than this part of the way blocks a part of it.
 const LEAST_WAY: f32 = 0.04;
 // The R2 sequence: see shaders/supersample/jitter.wgsl.
@@ -66,26 +72,48 @@ fn soft_rectangle_shadow(index: u32, point: SurfacePoint, sharp: f32) -> f32 {
     if last == 0.0 {
         return sharp;
     }
-    first = clamp(first, least, most);
-    last = clamp(last, first, most);
-
+    first = max(first / MARGIN, least);
+    last = max(min(last * MARGIN, most), first);
     let ratio = pow(last / first, 1.0 / f32(STEPS));
-    let step = max(ratio, 1.1);
     var seen = 0.0;
     for (var i = 0u; i < RAYS; i++) {
-        let aside = aside_at(index, i, noise);
-        var blocked = false;
-        for (var k = 0u; k < STEPS && !blocked; k++) {
-            let along = first * pow(ratio, f32(k) + 0.5);
-            let found = along_ray(receiver, along * aside);
-            if found.along > along / step && found.along < along * step {
-                let again = along_ray(receiver, found.along * aside);
-                blocked = again.along > found.along / step && again.along < found.along * step;
-            }
-        }
-        seen += select(1.0, 0.0, blocked);
+        seen += select(1.0, 0.0, is_blocked(receiver, aside_at(index, i, noise), first, ratio, 4.0 * least));
     }
     return seen / f32(RAYS);
+}
+
+// Follows a ray. Where something is nearer to the rectangle than the ray, the ray runs behind it; where it comes out again, it
+// has either met its surface, or left what it hides. The first is where the map goes on evenly, but for `slack`.
+fn is_blocked(receiver: SoftReceiver, aside: vec3<f32>, first: f32, ratio: f32, slack: f32) -> bool {
+    var hidden_at = 0.0;
+    var before = 0.0;
+    var along = first;
+    for (var step = 0u; step <= STEPS; step++) {
+        var after = along_ray(receiver, along * aside).along;
+        if after > along {
+            hidden_at = along;
+            before = after;
+        } else if before > 0.0 {
+            var out_at = along;
+            for (var i = 0u; i < HALVINGS; i++) {
+                let middle = sqrt(hidden_at * out_at);
+                let found = along_ray(receiver, middle * aside).along;
+                if found > middle {
+                    hidden_at = middle;
+                    before = found;
+                } else {
+                    out_at = middle;
+                    after = found;
+                }
+            }
+            if before <= EVENLY * after + slack {
+                return true;
+            }
+            before = 0.0;
+        }
+        along *= ratio;
+    }
+    return false;
 }
 
 // A point of the rectangle, from its middle.

@@ -189,8 +189,8 @@ fn penumbra() -> Result<(), Failed> {
         let hidden = (x - x * height / screen).clamp(-0.4, 0.4);
         5.0 * parallel_form_factor([(hidden - x) / height, (0.4 - x) / height], [-0.4 / height, 0.4 / height])
     };
-    for (area_lights, most, most_mean) in [("ltc", 0.05, 0.02), ("sampled", 0.02, 0.005)] {
-        let shot = Shot::pbr(64, &["radiance"]).set("samples", 64).set("area_lights", area_lights).set("local_shadow_texels", 1024);
+    for (area_lights, samples, most, most_mean) in [("ltc", 64, 0.05, 0.01), ("sampled", 256, 0.025, 0.006)] {
+        let shot = Shot::pbr(64, &["radiance"]).set("samples", samples).set("area_lights", area_lights).set("local_shadow_texels", 1024);
         let image = shot.one(&scene)?;
         let full = expected(0.5);
         // A pixel's middle, metres.
