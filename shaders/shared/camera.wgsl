@@ -38,10 +38,8 @@ fn direction_to_camera(position: vec3<f32>) -> vec3<f32> {
 // anywhere in the world.
 fn direction_through(uv: vec2<f32>) -> vec3<f32> {
     let far = camera.world_from_projection * vec4<f32>(uv.x * 2.0 - 1.0, 1.0 - uv.y * 2.0, 0.0, 1.0);
-    if is_orthographic(camera.projection_from_world) {
-        return camera.forward;
-    }
-    return normalize(far.xyz - camera.position * far.w);
+    // One return: with another one before it, Mesa 22.3's software driver loses 0.7 MB with each draw.
+    return normalize(select(far.xyz - camera.position * far.w, camera.forward, is_orthographic(camera.projection_from_world)));
 }
 
 // Metres from the camera, along the axis on which it looks.
