@@ -150,7 +150,8 @@ fn replay(
         let mut world = world(&scene)?;
         session.reload(&mut world, &next.request()).map_err(shown)?;
         let ran = ran(settle(&mut session)?);
-        if ran.iter().any(|name| name.contains("point_shadows")) {
+        // Another shape of the image is another frustum, to which cascades are fitted; no other map knows of it.
+        if ran.iter().any(|name| name.contains("shadow") && !(*what == "size" && name.starts_with("sun_shadows."))) {
             return Err(format!("{what}: ran {ran:?}").into());
         }
         check(what, &ran, "nothing")?;
