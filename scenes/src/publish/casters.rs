@@ -151,8 +151,9 @@ fn faces(bounds: Aabb, position: DVec3, reach: f64) -> u8 {
     let (middle, half) = ((min + max) * 0.5, (max - min) * 0.5);
     // Rounding must leave nothing out.
     let slack = 1e-6 * (middle.abs() + half).max_element();
+    // Ahead follows from the four sides for a point, and not for a box.
     let inside = |[right, up, forward]: &[DVec3; 3]| {
-        [forward + right, forward - right, forward + up, forward - up]
+        [*forward, forward + right, forward - right, forward + up, forward - up]
             .iter()
             .all(|plane| plane.dot(middle) + plane.abs().dot(half) + slack >= 0.0)
     };
