@@ -7,7 +7,7 @@ use libtest_mimic::Failed;
 use luminaire::image_file::LinearImage;
 
 use crate::Case;
-use crate::support::picture::{Eye, Shot, near, places, texel};
+use crate::support::picture::{Eye, Series, Shot, near, places, texel};
 
 pub const CASES: &[Case] = &[
     ("shadows::edge of a square under a point light", || square_shadow(Light::Lamp)),
@@ -100,9 +100,10 @@ fn no_acne_at_grazing_angles() -> Result<(), Failed> {
         "\"spot\": Spot(candela: 50, position: (-1, 0.15, 1), direction: (1, -0.05, -0.6), inner: 50, outer: 60)",
         "\"sun\": Directional(lux: 100, direction: (1, -0.03, -0.4))",
     ];
-    for (index, filter) in (0..3).flat_map(|light| FILTERS.map(|filter| (light, filter))) {
+    let mut series = Series::default();
+    for (filter, index) in FILTERS.into_iter().flat_map(|filter| (0..3).map(move |light| (filter, light))) {
         let scene = format!("({} lights: {{ {} }}, objects: {{ {floor} }})", eye.ron(), scenes[index]);
-        let image = Shot::pbr(128, &["radiance"]).set("shadow_filter", filter).one(&scene)?;
+        let image = series.one(&Shot::pbr(128, &["radiance"]).set("shadow_filter", filter), &scene)?;
         for place in places(&image) {
             let Some(point) = eye.on_plane(&image, place, DVec3::ZERO, DVec3::Y) else { continue };
             if point.x.abs().max(point.z.abs()) > 19.9 {
@@ -141,6 +142,7 @@ fn darkened(with: &LinearImage, without: &LinearImage) -> [usize; 2] {
 fn ball_does_not_shadow_itself() -> Result<(), Failed> {
     let eye = Eye::new([0.0, 0.5, 5.0], [0.0, 0.0, 0.0], 30.0);
     let shot = Shot::pbr(192, &["radiance", "normal"]);
+    let mut series = Series::default();
     // Facets coarser than the map's texels, about as fine, and finer.
     for (sectors, stacks) in [(24, 12), (128, 64), (512, 256)] {
         let scene = |lights: &str| {
@@ -156,10 +158,10 @@ fn ball_does_not_shadow_itself() -> Result<(), Failed> {
         let lights = [("lamp", lamp), ("sun", scene(sun))];
         // All filters with the coarsest facets, where most is lost.
         let filters = if sectors == 24 { &FILTERS[..] } else { &FILTERS[..1] };
-        for ((name, scene), filter) in lights.iter().flat_map(|light| filters.iter().map(move |filter| (light, *filter))) {
+        for (filter, (name, scene)) in filters.iter().flat_map(|filter| lights.iter().map(move |light| (*filter, light))) {
             let most_lost = if ["pcf3", "poisson"].contains(&filter) { MOST_LOST_BY_WIDE } else { MOST_LOST };
-            let with = shot.clone().set("shadow_filter", filter).take(scene)?;
-            let without = without.take(scene)?;
+            let with = series.take(&shot.clone().set("shadow_filter", filter), scene)?;
+            let without = series.take(&without.clone().set("shadow_filter", filter), scene)?;
             let (mut lost, mut light, mut steepest) = (0.0, 0.0, 0.0f64);
             for (x, y) in places(&with["radiance"]) {
                 let (a, b) = (texel(&with["radiance"], x, y)[0], texel(&without["radiance"], x, y)[0]);
@@ -196,17 +198,19 @@ fn thin_walls() -> Result<(), Failed> {
                 .replace(']', ")");
         }
     }
-    for (target, light) in [
+    let lights = [
         ([1.0, 0.2, 0.3], "\"lamp\": Point(candela: 1000, position: (2.5, 1.7, 1.2))"),
         ([-0.3, -1.0, 0.4], "\"lamp\": Point(candela: 1000, position: (1.3, 0, 0))"),
         ([-0.6, -0.9, -0.5], "\"sun\": Directional(lux: 1000, direction: (-1, -2, -0.7))"),
-    ] {
-        let eye = Eye::new([0.1, 0.2, 0.3], target, 100.0);
-        let scene = format!("({} lights: {{ {light} }}, objects: {{ {walls} }})", eye.ron());
-        // The wall next to the lamp is 1.7 texels thick, and the corners behind it are in sight. Filters that look farther need finer maps.
-        for (filter, texels) in [("plane", 256), ("pcf3", 768), ("poisson", 768)] {
-            let shot = Shot::pbr(256, &["radiance"]).set("local_shadow_texels", texels).set("sun_shadow_texels", texels);
-            let image = shot.set("shadow_filter", filter).one(&scene)?;
+    ];
+    let mut series = Series::default();
+    // The wall next to the lamp is 1.7 texels thick, and the corners behind it are in sight. Filters that look farther need finer maps.
+    for (filter, texels) in [("plane", 256), ("pcf3", 768), ("poisson", 768)] {
+        let shot = Shot::pbr(256, &["radiance"]).set("local_shadow_texels", texels).set("sun_shadow_texels", texels);
+        for (target, light) in lights {
+            let eye = Eye::new([0.1, 0.2, 0.3], target, 100.0);
+            let scene = format!("({} lights: {{ {light} }}, objects: {{ {walls} }})", eye.ron());
+            let image = series.one(&shot.clone().set("shadow_filter", filter), &scene)?;
             let leaks: Vec<_> = places(&image).filter(|(x, y)| texel(&image, *x, *y)[..3] != [0.0; 3]).take(5).collect();
             if !leaks.is_empty() {
                 return Err(format!("{light} shines into the room at {leaks:?} with the filter {filter}").into());
@@ -227,25 +231,25 @@ fn from_corner(eye: DVec3, ray: DVec3) -> f64 {
 
 /// A lamp within a room, off its middle, so that the edges of the cube's faces run across the walls: as bright as without maps.
 fn no_seams() -> Result<(), Failed> {
-    for target in [[1.0, 0.9, 0.8], [-1.0, -0.8, 0.9], [0.9, -0.7, -1.0]] {
+    let targets = [[1.0, 0.9, 0.8], [-1.0, -0.8, 0.9], [0.9, -0.7, -1.0]];
+    let mut series = Series::default();
+    for (filter, target) in FILTERS.into_iter().flat_map(|filter| targets.map(|target| (filter, target))) {
         let eye = Eye::new([0.0, 0.1, 0.0], target, 110.0);
         let scene = format!(
             "({} lights: {{ \"lamp\": Point(candela: 10, position: (0.3, -0.2, 0.4)) }},
             objects: {{ \"room\": (shape: Box(size: (4, 3, 5)), surface: (specular: 0)) }})",
             eye.ron()
         );
-        let shot = Shot::pbr(128, &["radiance"]);
-        let without = shot.clone().set("shadowed_point_lights", 0).one(&scene)?;
-        for filter in FILTERS {
-            let with = shot.clone().set("shadow_filter", filter).one(&scene)?;
-            let [_, lit] = darkened(&with, &without);
-            // Where walls meet, a filter that looks farther finds one of them before the other.
-            let counts = |place: &(u32, u32)| filter == "plane" || from_corner(eye.position, eye.ray(&with, place.0, place.1)) > 0.15;
-            let differs = |(x, y): &(u32, u32)| (texel(&with, *x, *y)[0] / texel(&without, *x, *y)[0] - 1.0).abs() > 0.001;
-            let wrong = places(&with).filter(counts).filter(differs).count();
-            if wrong > 0 || lit != 128 * 128 {
-                return Err(format!("{filter}: {wrong} of {lit} pixels are darker, looking to {target:?}").into());
-            }
+        let shot = Shot::pbr(128, &["radiance"]).set("shadow_filter", filter);
+        let without = series.one(&shot.clone().set("shadowed_point_lights", 0), &scene)?;
+        let with = series.one(&shot, &scene)?;
+        let [_, lit] = darkened(&with, &without);
+        // Where walls meet, a filter that looks farther finds one of them before the other.
+        let counts = |place: &(u32, u32)| filter == "plane" || from_corner(eye.position, eye.ray(&with, place.0, place.1)) > 0.15;
+        let differs = |(x, y): &(u32, u32)| (texel(&with, *x, *y)[0] / texel(&without, *x, *y)[0] - 1.0).abs() > 0.001;
+        let wrong = places(&with).filter(counts).filter(differs).count();
+        if wrong > 0 || lit != 128 * 128 {
+            return Err(format!("{filter}: {wrong} of {lit} pixels are darker, looking to {target:?}").into());
         }
     }
     Ok(())

@@ -109,6 +109,33 @@ impl Shot {
     }
 }
 
+/// Takes shots one after the other in one session. What two in a row have in common is compiled once, so shots with the same constants
+/// should follow each other.
+#[derive(Default)]
+pub struct Series(Option<Session>);
+
+impl Series {
+    pub fn take(&mut self, shot: &Shot, scene: &str) -> Result<BTreeMap<String, LinearImage>, Failed> {
+        let mut world = world(scene)?;
+        let mut session = match self.0.take() {
+            Some(mut session) => {
+                session.reload(&mut world, &shot.request()).map_err(shown)?;
+                session
+            }
+            None => shot.session(&mut world)?,
+        };
+        settle(&mut session)?;
+        let images = shot.outputs.iter().map(|name| Ok((name.clone(), session.read_output(name).map_err(shown)?))).collect();
+        self.0 = Some(session);
+        images
+    }
+
+    /// The first output.
+    pub fn one(&mut self, shot: &Shot, scene: &str) -> Result<LinearImage, Failed> {
+        self.take(shot, scene)?.remove(&shot.outputs[0]).ok_or_else(|| "no output".into())
+    }
+}
+
 /// Renders until nothing changes any more, and tells what ran in each frame but the last, in which nothing did.
 pub fn settle(session: &mut Session) -> Result<Vec<Vec<String>>, Failed> {
     let mut frames = Vec::new();

@@ -7,7 +7,7 @@ use libtest_mimic::Failed;
 
 use super::{below, shot};
 use crate::shadows::FILTERS;
-use crate::support::picture::{near, places, texel};
+use crate::support::picture::{Series, near, places, texel};
 
 const RADIUS: f64 = 0.5;
 const CENTER: DVec3 = DVec3::new(0.0, 1.2, 0.0);
@@ -42,7 +42,8 @@ pub fn of_a_sphere() -> Result<(), Failed> {
             beside(lamp),
         ),
     ];
-    for (name, light, expected, middle) in cases {
+    let mut series = Series::default();
+    for (filter, (name, light, expected, middle)) in FILTERS.into_iter().flat_map(|filter| cases.iter().map(move |case| (filter, case))) {
         let scene = format!(
             "({} lights: {{ \"light\": {light} }}, objects: {{
                 \"floor\": (shape: Plane(size: (12, 12)), surface: (specular: 0)),
@@ -50,16 +51,14 @@ pub fn of_a_sphere() -> Result<(), Failed> {
             below([middle.x, middle.z], HEIGHT),
             place(CENTER)
         );
-        for filter in FILTERS {
-            let shot = shot(256, &["visibility"]).set("shadow_filter", filter).set("light_radius", 0.02);
-            let image = shot.one(&scene)?;
-            let pixel = (HEIGHT / 256.0) * (HEIGHT / 256.0);
-            // A spot's light ends around its shadow: what it does not reach is not counted.
-            let within = |(x, y): (u32, u32)| (f64::from(x) - 127.5).hypot(f64::from(y) - 127.5) * HEIGHT / 256.0 < 1.35;
-            let area: f64 = places(&image).filter(|place| within(*place)).map(|(x, y)| (1.0 - texel(&image, x, y)[0]) * pixel).sum();
-            println!("{name}, {filter}: {area:.4} m2, {:+.2} %", (area / expected - 1.0) * 100.0);
-            near(&format!("the area of the shadow, {name}, {filter}"), area, expected, 0.01)?;
-        }
+        let shot = shot(256, &["visibility"]).set("shadow_filter", filter).set("light_radius", 0.02);
+        let image = series.one(&shot, &scene)?;
+        let pixel = (HEIGHT / 256.0) * (HEIGHT / 256.0);
+        // A spot's light ends around its shadow: what it does not reach is not counted.
+        let within = |(x, y): (u32, u32)| (f64::from(x) - 127.5).hypot(f64::from(y) - 127.5) * HEIGHT / 256.0 < 1.35;
+        let area: f64 = places(&image).filter(|place| within(*place)).map(|(x, y)| (1.0 - texel(&image, x, y)[0]) * pixel).sum();
+        println!("{name}, {filter}: {area:.4} m2, {:+.2} %", (area / expected - 1.0) * 100.0);
+        near(&format!("the area of the shadow, {name}, {filter}"), area, *expected, 0.01)?;
     }
     Ok(())
 }

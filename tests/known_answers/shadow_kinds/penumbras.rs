@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 use libtest_mimic::Failed;
 
 use super::{below, shot};
-use crate::support::picture::{near, texel};
+use crate::support::picture::{Series, near, texel};
 
 /// How much of a disc of radius 1 lies to one side of a line at this distance from its middle, from -1 to 1.
 fn part_of_disc(at: f64) -> f64 {
@@ -28,6 +28,7 @@ fn reaches(value: f64, of: impl Fn(f64) -> f64, [mut low, mut high]: [f64; 2]) -
 pub fn of_an_edge() -> Result<(), Failed> {
     let tenths = 2.0 * reaches(0.9, part_of_disc, [-1.0, 1.0]);
     let (top, radius, angle) = (3.0, 0.1, 4.0_f64);
+    let mut series = Series::default();
     for light in ["lamp", "spot", "sun"] {
         for height in [0.5, 1.0, 1.5] {
             let (source, half_width) = match light {
@@ -48,7 +49,7 @@ pub fn of_an_edge() -> Result<(), Failed> {
                 height + 0.005
             );
             let shot = shot(192, &["visibility"]).set("shadow_filter", "pcss").set("light_radius", radius).set("sun_angle", angle);
-            let image = shot.set("sun_shadow_texels", 4096).set("shadow_cascades", 1).one(&scene)?;
+            let image = series.one(&shot.set("sun_shadow_texels", 4096).set("shadow_cascades", 1), &scene)?;
             // Which way the image is turned: the edge runs along its rows or its columns.
             let mean = |along: &dyn Fn(u32, u32) -> f64, line: u32| (0..192).map(|at| along(line, at)).sum::<f64>() / 192.0;
             let by_column: Vec<f64> = (0..192).map(|line| mean(&|x, y| texel(&image, x, y)[0], line)).collect();
