@@ -70,8 +70,8 @@ fn entry(binding: &Binding) -> wgpu::BindGroupLayoutEntry {
         BindingTarget::StorageTable(_) | BindingTarget::Batch => buffer(storage(false)),
         BindingTarget::Buffer { uniform: true, .. } => buffer(wgpu::BufferBindingType::Uniform),
         BindingTarget::Buffer { writable, .. } => buffer(storage(*writable)),
-        BindingTarget::MaterialTexture(_) | BindingTarget::SceneTexture(_) => wgpu::BindingType::Texture {
-            sample_type: wgpu::TextureSampleType::Float { filterable: true },
+        target @ (BindingTarget::MaterialTexture(_) | BindingTarget::SceneTexture(_)) => wgpu::BindingType::Texture {
+            sample_type: wgpu::TextureSampleType::Float { filterable: matches!(target, BindingTarget::MaterialTexture(_)) },
             view_dimension: wgpu::TextureViewDimension::D2,
             multisampled: false,
         },

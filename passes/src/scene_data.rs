@@ -375,7 +375,7 @@ fn create_texture(gpu: &Gpu, texture: &PublishedTexture) -> wgpu::Texture {
         format: match texture.texels {
             PublishedTexels::Unorm8 => wgpu::TextureFormat::Rgba8Unorm,
             PublishedTexels::Srgb8 => wgpu::TextureFormat::Rgba8UnormSrgb,
-            PublishedTexels::Half => wgpu::TextureFormat::Rgba16Float,
+            PublishedTexels::Float => wgpu::TextureFormat::Rgba32Float,
         },
         usage: wgpu::TextureUsages::TEXTURE_BINDING | wgpu::TextureUsages::COPY_DST,
         view_formats: &[],

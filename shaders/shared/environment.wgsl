@@ -16,6 +16,10 @@ struct Environment {
     // Factor on the image of the sky, and by how much that is turned about +Y, radians.
     sky_strength: f32,
     sky_rotation: f32,
+    // A power of two: the image's brightest texel divided by it is at most 32,768.
+    sky_unit: f32,
+    // 1 where the image holds the six faces of a cube, 0 where it is equirectangular.
+    sky_has_faces: u32,
 }
 
 var<uniform> environment: Environment;

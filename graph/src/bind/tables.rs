@@ -38,10 +38,14 @@ pub(super) fn bind(
     let texture_2d =
         matches!(&global.kind, GlobalKind::Texture { dimension: ViewDimension::D2, kind: ScalarKind::Float, multisampled: false, .. });
     if published.textures.iter().any(|known| known == name) {
-        return Some(if texture_2d {
-            Ok(BindingTarget::SceneTexture(name.to_owned()))
-        } else {
-            mismatch(Mismatch::Kind, "is a texture of the scene", Some(format!("declare `var {name}: texture_2d<f32>;`")))
+        return Some(match &global.kind {
+            GlobalKind::Texture { filtered: true, .. } if texture_2d => mismatch(
+                Mismatch::Kind,
+                "holds 32-bit floats, which not every device filters",
+                Some(format!("read texels with `textureLoad({name}, ..)` and mix them")),
+            ),
+            _ if texture_2d => Ok(BindingTarget::SceneTexture(name.to_owned())),
+            _ => mismatch(Mismatch::Kind, "is a texture of the scene", Some(format!("declare `var {name}: texture_2d<f32>;`"))),
         });
     }
     let is_draw = matches!(pass.kind, PassKind::Draw { .. });

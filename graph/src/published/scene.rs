@@ -85,8 +85,8 @@ pub enum PublishedTexels {
     Unorm8,
     /// 8 bits a channel; sampled values are decoded from sRGB.
     Srgb8,
-    /// Half floats.
-    Half,
+    /// 32-bit floats, which shaders read with `textureLoad`.
+    Float,
 }
 
 impl PublishedTexels {
@@ -94,7 +94,7 @@ impl PublishedTexels {
     pub fn bytes(self) -> u32 {
         match self {
             PublishedTexels::Unorm8 | PublishedTexels::Srgb8 => 4,
-            PublishedTexels::Half => 8,
+            PublishedTexels::Float => 16,
         }
     }
 }

@@ -110,13 +110,26 @@ fn open<'a>(source: &'a ImageSource<'a>, folder: &Folder) -> Result<(Encoded<'a>
         Bytes::View(bytes) => bytes.into(),
         Bytes::Uri(uri) => folder.read(uri, LARGEST_FILE).map_err(|problem| (problem, "keep the image beside the glTF file"))?.into(),
     };
-    let format = match bytes.as_ref() {
-        [0x89, b'P', b'N', b'G', 0x0D, 0x0A, 0x1A, 0x0A, ..] => ImageFormat::Png,
-        [0xFF, 0xD8, 0xFF, ..] => ImageFormat::Jpeg,
-        other => return Err((format!("is neither PNG nor JPEG{}", guess(other)), "save it as PNG or JPEG")),
-    };
+    let format = recognise(&bytes).map_err(|problem| (problem, "save it as PNG or JPEG"))?;
     let pixels = measure(&bytes, format).map_err(|problem| (problem, "save the image again, no larger than the limits"))?;
     Ok((Encoded { source, bytes, format }, pixels))
+}
+
+fn recognise(bytes: &[u8]) -> Result<ImageFormat, String> {
+    match bytes {
+        [0x89, b'P', b'N', b'G', 0x0D, 0x0A, 0x1A, 0x0A, ..] => Ok(ImageFormat::Png),
+        [0xFF, 0xD8, 0xFF, ..] => Ok(ImageFormat::Jpeg),
+        other => Err(format!("is neither PNG nor JPEG{}", guess(other))),
+    }
+}
+
+/// Decodes the bytes of a PNG or JPEG file that stands for itself: width, height, and RGBA as sRGB has it. The error is the end of a
+/// sentence: `the image is ..`, `the image has ..`.
+pub(crate) fn decode_picture(bytes: &[u8]) -> Result<(u32, u32, Vec<u8>), String> {
+    let format = recognise(bytes)?;
+    measure(bytes, format)?;
+    let rgba = reader(bytes, format).decode().map_err(|error| undecodable(&error))?.into_rgba8();
+    Ok((rgba.width(), rgba.height(), rgba.into_raw()))
 }
 
 fn guess(bytes: &[u8]) -> &'static str {

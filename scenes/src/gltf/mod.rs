@@ -25,7 +25,7 @@ mod camera;
 mod container;
 mod element;
 mod geometry;
-mod image;
+pub(crate) mod image;
 mod json;
 mod keys;
 mod light;

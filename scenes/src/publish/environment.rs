@@ -35,7 +35,8 @@ pub(super) fn table(
         rectangle_count: rectangle_count as u32,
         sky_strength: image.strength,
         sky_rotation: image.rotation,
-        padding: [0; 2],
+        sky_unit: image.unit,
+        sky_has_faces: u32::from(image.has_faces),
     }
 }
 

@@ -56,7 +56,10 @@ pub struct EnvironmentTable {
     pub sky_strength: f32,
     /// By how much that is turned about +Y, radians.
     pub sky_rotation: f32,
-    pub padding: [u32; 2],
+    /// A power of two: the image's brightest texel divided by it is at most 32,768.
+    pub sky_unit: f32,
+    /// 1 where the image holds the six faces of a cube, 0 where it is equirectangular.
+    pub sky_has_faces: u32,
 }
 
 /// An element of `directional_lights`.

@@ -89,6 +89,8 @@ pub fn schema() -> PublishedSchema {
             rectangle_count: "u32",
             sky_strength: "f32",
             sky_rotation: "f32",
+            sky_unit: "f32",
+            sky_has_faces: "u32",
         }),
     );
     add(

@@ -1,4 +1,4 @@
-//! The files that a scene names: found, loaded once each, and given the materials that the scene changes; and its image of the sky.
+//! The files that a scene names: found, loaded once each, and given the materials that the scene changes.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -8,22 +8,16 @@ use bevy_ecs::prelude::World;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::syntax::document::Text;
 
-use super::check::{FileUse, Play, SkyUse, material, motion};
+use super::check::{FileUse, Play, material, motion};
 use super::checks::Problems;
 use super::load::{extension, load_gltf};
 use crate::asset::Asset;
-use crate::linear_image::{LinearImage, decode_linear};
-use crate::world::{Materials, Repeat, SkyImage, StoredAsset, store_asset};
+use crate::world::{Materials, Repeat, StoredAsset, store_asset};
 
 /// Most levels of a file's nodes: each event inside of it walks up once.
 const MAX_LEVELS: usize = 1024;
 /// Most materials, where entries change those of their files.
 const MAX_MATERIALS: usize = 1 << 18;
-/// Bytes of the file of the sky's image.
-const LARGEST_IMAGE: u64 = 1 << 30;
-/// The largest half float, in which it is published.
-const BRIGHTEST_TEXEL: f32 = 65504.0;
-
 /// Where a scene's files may lie.
 #[derive(Clone, Copy)]
 pub(super) struct Place<'a> {
@@ -142,7 +136,7 @@ fn resolve(path: &Text, place: Option<Place<'_>>) -> Result<PathBuf, Diagnostic>
 }
 
 /// The path of a file of any kind, which must lie where the scene's files may.
-fn locate(path: &Text, place: Option<Place<'_>>) -> Result<PathBuf, Diagnostic> {
+pub(super) fn locate(path: &Text, place: Option<Place<'_>>) -> Result<PathBuf, Diagnostic> {
     let error = |code, message| Err(Diagnostic::error(code, message).at(path.span, "this file"));
     let Some(Place { folder, root }) = place else {
         return error("scene::no-folder", format!("the scene has no folder, so it can't name the file `{}`", path.value));
@@ -158,48 +152,6 @@ fn locate(path: &Text, place: Option<Place<'_>>) -> Result<PathBuf, Diagnostic> 
             .map_err(|problem| problem.hint("a folder around both can be given as the asset root"));
     }
     Ok(resolved)
-}
-
-/// Reads the image of the sky. Texels that are no light, or more than a half float holds, are brought to what is nearest, with a warning.
-pub(super) fn load_sky(sky: &SkyUse, place: Option<Place<'_>>, problems: &mut Problems) -> Option<SkyImage> {
-    let path = locate(&sky.path, place).map_err(|problem| problems.add(problem)).ok()?;
-    let unreadable = |reason: String| {
-        Diagnostic::error("scene::sky-image", format!("can't read the image of the sky `{}`: {reason}", sky.path.value))
-            .at(sky.path.span, "this file")
-            .hint("it must be an equirectangular Radiance HDR or OpenEXR file")
-    };
-    let mut image = read_image(&path).map_err(|reason| problems.add(unreadable(reason))).ok()?;
-    let mut mended = 0;
-    for texel in &mut image.texels {
-        let light = [texel[0], texel[1], texel[2]];
-        // Not a clamp: what is no number becomes 0.
-        let [r, g, b] = light.map(|value| if value > 0.0 { value.min(BRIGHTEST_TEXEL) } else { 0.0 });
-        mended += usize::from([r, g, b] != light);
-        *texel = [r, g, b, 1.0];
-    }
-    if mended > 0 {
-        let message =
-            format!("{mended} texels of `{}` were no light (negative or no number), or brighter than {BRIGHTEST_TEXEL}", sky.path.value);
-        problems.0.push(
-            Diagnostic::warning("scene::sky-texels", message).at(sky.path.span, "they were brought to 0, or to that").hint("save it again"),
-        );
-    }
-    if image.width != 2 * image.height {
-        let message = format!(
-            "`{}` has {} x {} texels: an equirectangular image is twice as wide as high",
-            sky.path.value, image.width, image.height
-        );
-        problems.0.push(Diagnostic::warning("scene::sky-shape", message).at(sky.path.span, "it is stretched over the sky"));
-    }
-    Some(SkyImage { image: Arc::new(image), rotation: sky.rotation, strength: sky.strength })
-}
-
-fn read_image(path: &Path) -> Result<LinearImage, String> {
-    let bytes = std::fs::metadata(path).map_err(|error| error.to_string())?.len();
-    if bytes > LARGEST_IMAGE {
-        return Err(format!("it is larger than {} MiB", LARGEST_IMAGE >> 20));
-    }
-    decode_linear(&std::fs::read(path).map_err(|error| error.to_string())?)
 }
 
 /// A problem of a glTF file, with the place that names the file.

@@ -7,13 +7,14 @@ use luminaire_graph::diagnostic::{Diagnostic, has_errors};
 use luminaire_graph::source::SourceMap;
 use luminaire_graph::syntax::read_document;
 
-use super::assets::{Place, load_files, load_sky};
+use super::assets::{Place, load_files};
 use super::check::{Checked, check};
 use super::checks::Problems;
 use super::document::SceneDoc;
 use super::events::events;
 use super::names::Names;
 use super::size::check_size;
+use super::sky::load_sky;
 use super::{default_light, spawn};
 use crate::gltf;
 use crate::timeline::{self, Timeline};

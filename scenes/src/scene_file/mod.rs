@@ -17,6 +17,7 @@ mod events;
 mod load;
 mod names;
 mod size;
+mod sky;
 mod spawn;
 
 #[cfg(test)]

@@ -44,7 +44,7 @@ pub use edit::{find_by_name, set_translation};
 pub(crate) use glow::glowing_rectangles;
 pub use interior::interior_camera;
 pub use repeat::Repeat;
-pub use resources::{Environment, Images, Materials, Meshes, SkyImage, new_world};
+pub use resources::{Environment, Images, Materials, Meshes, SkyImage, SkyShape, new_world};
 pub use slots::assign_slots;
 pub(crate) use solid::solid_meshes;
 pub use spatial::{Holds, Kind, OrientedBox, SpatialIndex};

@@ -38,11 +38,22 @@ impl Default for Environment {
     }
 }
 
+/// How an image shows all directions.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum SkyShape {
+    /// u = atan2(z, x) / 2 pi + 1/2 and v = acos(y) / pi of a direction, the top row is up.
+    Equirectangular,
+    /// Six square faces of a cube, seen from within as WebGPU has them: two to a row, +X -X, +Y -Y, +Z -Z.
+    Faces,
+}
+
 /// An image of the sky, which adds its light to [`Environment::sky_radiance`]. Not there unless a scene has one.
 #[derive(Resource, Debug, Clone, PartialEq)]
 pub struct SkyImage {
-    /// Equirectangular, nits: u = atan2(z, x) / 2 pi + 1/2 and v = acos(y) / pi of a direction, the top row is up.
+    /// Nits, finite and not negative.
     pub image: Arc<LinearImage>,
+    /// What its texels show.
+    pub shape: SkyShape,
     /// By how much it is turned about +Y, radians.
     pub rotation: f32,
     /// Factor on its radiance.

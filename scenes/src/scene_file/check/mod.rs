@@ -51,7 +51,8 @@ pub(super) struct Checked {
 /// An image of the sky.
 #[derive(Debug)]
 pub(super) struct SkyUse {
-    pub(super) path: Text,
+    /// One equirectangular image, or six faces.
+    pub(super) files: Vec<Text>,
     /// Radians.
     pub(super) rotation: f32,
     pub(super) strength: f32,
@@ -123,17 +124,28 @@ pub(super) struct FileUse {
 fn sky_image(environment: &EnvironmentDoc, problems: &mut Problems) -> Option<SkyUse> {
     let rotation = problems.number("`rotation` of the environment", environment.rotation.as_ref(), 0.0, -360.0..=360.0);
     let strength = problems.number("`strength` of the environment", environment.strength.as_ref(), 1.0, 0.0..=BRIGHT);
-    let Some(path) = environment.image.clone() else {
+    let files: Vec<Text> = environment.image.iter().chain(&environment.faces).cloned().collect();
+    if let (Some(image), Some(face)) = (&environment.image, environment.faces.first()) {
+        let problem = Diagnostic::error("scene::two-skies", "the environment has `image` and `faces`").at(face.span, "six files");
+        problems.add(problem.and(image.span, "and one").hint("leave one of both out"));
+        return None;
+    }
+    if let (Some(first), false) = (environment.faces.first(), matches!(environment.faces.len(), 0 | 6)) {
+        let message = format!("the environment has {} `faces`, and a cube has six", environment.faces.len());
+        problems.add(Diagnostic::error("scene::sky-faces", message).at(first.span, "the first").hint("in this order: +X -X +Y -Y +Z -Z"));
+        return None;
+    }
+    if files.is_empty() {
         for (name, number) in [("rotation", &environment.rotation), ("strength", &environment.strength)] {
             if let Some(number) = number {
-                let message = format!("`{name}` of the environment turns nothing: there is no `image`");
+                let message = format!("`{name}` of the environment turns nothing: there is neither `image` nor `faces`");
                 let message = if name == "strength" { message.replace("turns", "brightens") } else { message };
                 problems.add(Diagnostic::error("scene::no-sky-image", message).at(number.span, "of which image?"));
             }
         }
         return None;
-    };
-    Some(SkyUse { path, rotation: rotation.to_radians(), strength })
+    }
+    Some(SkyUse { files, rotation: rotation.to_radians(), strength })
 }
 
 /// Checks everything but names of nodes and what the timeline changes; what is wrong goes to `problems`.

@@ -62,9 +62,12 @@ pub struct EnvironmentDoc {
     /// Radiance from all directions, nits; black unless said otherwise.
     #[serde(default)]
     pub sky_radiance: Option<Vector>,
-    /// An equirectangular .hdr or .exr file whose radiance is added to that.
+    /// An equirectangular file (.hdr, .exr, .png or .jpg) whose radiance is added to that.
     #[serde(default)]
     pub image: Option<Text>,
+    /// Six files instead of one, for the faces of a cube: +X -X +Y -Y +Z -Z.
+    #[serde(default)]
+    pub faces: Vec<Text>,
     /// Degrees by which the image is turned about +Y; 0 unless said otherwise.
     #[serde(default)]
     pub rotation: Option<Number>,

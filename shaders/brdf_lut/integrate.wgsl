@@ -1,0 +1,61 @@
+// What a lobe reflects of light from everywhere: F0 * A + F90 * B, by cosine to the eye (columns) and roughness (rows).
+//
+// Karis 2013, "Real Shading in Unreal Engine 4", second factor of the split sum, with the height-correlated Smith term of shared/brdf.wgsl:
+// a sum over visible half vectors (Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4)), whose weight is
+// G2 / G1 alone.
+
+#import "shared/brdf.wgsl"
+#import "shared/sobol.wgsl"
+
+struct Params {
+    // Half vectors for each texel.
+    samples: u32,
+}
+
+var<uniform> params: Params;
+
+struct Targets {
+    // A and B.
+    factors: vec4<f32>,
+}
+
+// Smith's Lambda: shadowed area per visible area.
+fn smith_lambda(alpha: f32, cosine: f32) -> f32 {
+    let cosine_squared = square(cosine);
+    return 0.5 * (sqrt(1.0 + square(alpha) * (1.0 - cosine_squared) / cosine_squared) - 1.0);
+}
+
+// A half vector that the eye sees, in the frame of the normal; the eye stands over the x axis.
+fn visible_half_vector(to_eye: vec3<f32>, alpha: f32, number: vec2<f32>) -> vec3<f32> {
+    let stretched = normalize(vec3<f32>(alpha * to_eye.x, 0.0, to_eye.z));
+    let radius = sqrt(number.x);
+    let angle = 2.0 * PI * number.y;
+    let x = radius * cos(angle);
+    let part = 0.5 * (1.0 + stretched.z);
+    let y = mix(sqrt(max(0.0, 1.0 - x * x)), radius * sin(angle), part);
+    // Across the eye's plane, up along it, and towards the eye.
+    let up = vec3<f32>(-stretched.z, 0.0, stretched.x);
+    let sampled = x * vec3<f32>(0.0, 1.0, 0.0) + y * up + sqrt(max(0.0, 1.0 - x * x - y * y)) * stretched;
+    return normalize(vec3<f32>(alpha * sampled.xy, max(1.0e-6, sampled.z)));
+}
+
+@fragment
+fn integrate(@location(0) uv: vec2<f32>) -> Targets {
+    let n_dot_v = uv.x;
+    let alpha = ggx_alpha(uv.y);
+    let to_eye = vec3<f32>(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
+    let from_eye = smith_lambda(alpha, n_dot_v);
+    var sum = vec2<f32>(0.0);
+    for (var i = 0u; i < params.samples; i++) {
+        let halfway = visible_half_vector(to_eye, alpha, sobol_2d(i) + 0.5 / f32(params.samples));
+        let v_dot_h = dot(to_eye, halfway);
+        let n_dot_l = 2.0 * v_dot_h * halfway.z - n_dot_v;
+        if n_dot_l > 0.0 {
+            let seen = (1.0 + from_eye) / (1.0 + from_eye + smith_lambda(alpha, n_dot_l));
+            let missing = saturate(1.0 - v_dot_h);
+            let fresnel = square(square(missing)) * missing;
+            sum += seen * vec2<f32>(1.0 - fresnel, fresnel);
+        }
+    }
+    return Targets(vec4<f32>(sum / f32(params.samples), 0.0, 1.0));
+}
