@@ -5,10 +5,10 @@
 // G2 / G1 alone.
 
 #import "shared/brdf.wgsl"
-#import "shared/sobol.wgsl"
+#import "shared/round_half.wgsl"
 
 struct Params {
-    // Half vectors for each texel.
+    // Half vectors along each of two dimensions.
     samples: u32,
 }
 
@@ -29,7 +29,8 @@ fn smith_lambda(alpha: f32, cosine: f32) -> f32 {
 fn visible_half_vector(to_eye: vec3<f32>, alpha: f32, number: vec2<f32>) -> vec3<f32> {
     let stretched = normalize(vec3<f32>(alpha * to_eye.x, 0.0, to_eye.z));
     let radius = sqrt(number.x);
-    let angle = 2.0 * PI * number.y;
+    // Both sides of the eye's plane reflect the same: one of them is enough.
+    let angle = PI * (number.y - 0.5);
     let x = radius * cos(angle);
     let part = 0.5 * (1.0 + stretched.z);
     let y = mix(sqrt(max(0.0, 1.0 - x * x)), radius * sin(angle), part);
@@ -46,16 +47,21 @@ fn integrate(@location(0) uv: vec2<f32>) -> Targets {
     let to_eye = vec3<f32>(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     let from_eye = smith_lambda(alpha, n_dot_v);
     var sum = vec2<f32>(0.0);
-    for (var i = 0u; i < params.samples; i++) {
-        let halfway = visible_half_vector(to_eye, alpha, sobol_2d(i) + 0.5 / f32(params.samples));
+    let count = params.samples * params.samples;
+    for (var i = 0u; i < count; i++) {
+        let cell = vec2<f32>(vec2<u32>(i % params.samples, i / params.samples));
+        // Evenly by the height over the disc that half vectors are taken from, whose rim has the lobe's tail.
+        let number = (cell + 0.5) / f32(params.samples);
+        let height = 1.0 - number.x;
+        let halfway = visible_half_vector(to_eye, alpha, vec2<f32>(1.0 - square(height), number.y));
         let v_dot_h = dot(to_eye, halfway);
         let n_dot_l = 2.0 * v_dot_h * halfway.z - n_dot_v;
         if n_dot_l > 0.0 {
             let seen = (1.0 + from_eye) / (1.0 + from_eye + smith_lambda(alpha, n_dot_l));
             let missing = saturate(1.0 - v_dot_h);
             let fresnel = square(square(missing)) * missing;
-            sum += seen * vec2<f32>(1.0 - fresnel, fresnel);
+            sum += 2.0 * height * seen * vec2<f32>(1.0 - fresnel, fresnel);
         }
     }
-    return Targets(vec4<f32>(sum / f32(params.samples), 0.0, 1.0));
+    return Targets(vec4<f32>(round_half(vec3<f32>(sum / f32(count), 0.0)), 1.0));
 }

@@ -3,13 +3,10 @@
 #import "environment/lookup.wgsl"
 #import "ibl/split_sum.wgsl"
 #import "irradiance/coefficients.wgsl"
-#import "prefilter/levels.wgsl"
+#import "prefilter/lookup.wgsl"
 #import "shared/gbuffer_textures.wgsl"
 #import "shared/jitter.wgsl"
 
-// The environment itself, and means of it over lobes.
-var environment_cube: texture_cube<f32>;
-var prefiltered: texture_cube<f32>;
 // Irradiance / pi.
 var irradiance_cube: texture_cube<f32>;
 
@@ -28,15 +25,6 @@ fn irradiance(normal: vec3<f32>) -> vec3<f32> {
     return sh_irradiance(0u, normal);
 }
 
-fn mean_over_lobe(axis: vec3<f32>, roughness: f32) -> vec3<f32> {
-    let level = roughness_level(roughness, textureNumLevels(prefiltered));
-    let filtered = textureSampleLevel(prefiltered, linear_clamp, axis, max(level, 0.0)).rgb;
-    if roughness >= sharpest_roughness {
-        return filtered;
-    }
-    return mix(textureSampleLevel(environment_cube, linear_clamp, axis, 0.0).rgb, filtered, roughness / sharpest_roughness);
-}
-
 @fragment
 fn resolve(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> Targets {
     let texel = vec2<i32>(place.xy);
@@ -52,6 +40,6 @@ fn resolve(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> T
     let reflectance = split_sum(point, n_dot_v);
     let diffuse = environment_light(irradiance(in_environment(point.normal)));
     let mirrored = reflect(-point.to_eye, point.normal);
-    let specular = environment_light(mean_over_lobe(in_environment(mirrored), point.roughness));
+    let specular = environment_light(mean_over_lobe(0u, in_environment(mirrored), point.roughness));
     return Targets(vec4<f32>(fit_half(reflectance.diffuse * diffuse + reflectance.specular * specular), 0.0));
 }

@@ -5,12 +5,12 @@
 // metal's each for itself: mixed first, a half-metal would get neither's. With it the diffuse part has what the dielectric's lobe leaves, so
 // that a white surface in white light is white; without, it has what Fresnel lets through at single facets.
 
+#import "prefilter/lookup.wgsl"
 #import "shared/math.wgsl"
 #import "shared/surface_point.wgsl"
 
 // A and B by cosine to the eye and roughness (brdf_lut/integrate.wgsl).
 var brdf_lut: texture_2d<f32>;
-var linear_clamp: sampler;
 
 // Light that bounces between facets is given back.
 override compensated: bool = true;

@@ -1,43 +1,47 @@
-// One face of one level of a prefiltered cube: the mean of the environment over the GGX lobe that is seen along its axis (n = v = r).
+// One face of one step of a prefiltered cube: the mean of the environment over the GGX lobe that is seen along its axis (n = v = r).
 //
-// Karis 2013, "Real Shading in Unreal Engine 4": the first factor of the split sum, weights D(h) (n.l) / 4. Narrow lobes take samples of
-// half vectors, each from the level of the source whose texels are as large as the sample's share of the lobe (Krivanek and Colbert 2008,
-// "Real-time Shading with Filtered Importance Sampling"). Wide ones are summed over all texels of a coarse level: no sample can miss
-// what is small and bright.
+// Karis 2013, "Real Shading in Unreal Engine 4": the first factor of the split sum, weights D(h) (n.l) / 4. It is summed over the whole
+// sphere by cells of a quadtree, whose levels are those of the source: a cell is divided while the lobe changes within it (as in Barnes
+// and Hut 1986, "A hierarchical O(N log N) force-calculation algorithm"), and while it holds so much light that its place counts. So
+// nothing small and bright is missed, as samples would, and what is dark costs little.
 
 #import "environment/cube_texel.wgsl"
-#import "prefilter/levels.wgsl"
+#import "prefilter/steps.wgsl"
 #import "shared/brdf.wgsl"
-#import "shared/frame.wgsl"
 #import "shared/round_half.wgsl"
-#import "shared/sobol.wgsl"
 
 struct Params {
-    // 6 * level + face, of the first cube; the others follow.
+    // 6 * step + face, of the first cube; the others follow.
     i: u32,
-    // Half vectors of level 0; each level takes twice as many as the one before.
-    samples: u32,
+    // How large a cell may be at most, by the angle over which the lobe changes much.
+    cell_size: f32,
+    // Which part of the light of the mean environment may be in doubt because of where it lies within a cell.
+    doubt: f32,
 }
 
 var<uniform> params: Params;
-// All levels of the cubes.
-var source: texture_cube_array<f32>;
-// Six faces for each cube, of the level that wide lobes are summed over.
-var coarse: texture_2d_array<f32>;
-var linear_clamp: sampler;
+// Six faces for each cube, with levels down to one texel.
+var source: texture_2d_array<f32>;
 
-// Edge of level 0 of the cube that is made, and how many levels it has.
+// Edge of level 0 of the cube that is made, and how many steps there are.
 override edge: u32 = 1;
-override levels: u32 = 1;
+override steps: u32 = 2;
 
-// From here a lobe is 6 texels of a coarse level of 32 texels wide at half its height.
-const LEAST_SUMMED_ALPHA: f32 = 0.115;
-// A sample takes the level whose texels are twice as large along each edge as its share: neighbours overlap, and leave no grain.
-const LEVEL_BIAS: f32 = 1.0;
+// The chord over which wide lobes change, through the cosine alone.
+const LONGEST_CORE: f32 = 0.5;
 
 struct Targets {
     // In units of the source.
     radiance: vec4<f32>,
+}
+
+// Bits 0, 2, 4.. as bits 0, 1, 2..
+fn every_second_bit(bits: u32) -> u32 {
+    var x = bits & 0x55555555u;
+    x = (x | (x >> 1u)) & 0x33333333u;
+    x = (x | (x >> 2u)) & 0x0f0f0f0fu;
+    x = (x | (x >> 4u)) & 0x00ff00ffu;
+    return (x | (x >> 8u)) & 0x0000ffffu;
 }
 
 // The distribution of half vectors where n = v, from the cosine of the light's angle; times pi.
@@ -48,46 +52,53 @@ fn lobe(alpha: f32, n_dot_l: f32) -> f32 {
     return square(alpha / spread);
 }
 
-fn summed(cube: u32, normal: vec3<f32>, alpha: f32) -> vec3<f32> {
-    let source_edge = textureDimensions(coarse).x;
-    var sum = vec3<f32>(0.0);
-    var weight = 0.0;
+// All cells in the order of a quadtree: face after face, a cell is either taken or its four parts are.
+fn lobe_mean(cube: u32, normal: vec3<f32>, alpha: f32) -> vec3<f32> {
+    let coarsest = textureNumLevels(source) - 1u;
+    var everything = 0.0;
     for (var face = 0u; face < 6u; face++) {
-        for (var index = 0u; index < source_edge * source_edge; index++) {
-            let texel = vec2<u32>(index % source_edge, index / source_edge);
-            let place = place_on_face(vec2<f32>(texel) + 0.5, f32(source_edge));
-            let n_dot_l = dot(normal, normalize(cube_direction(face, place)));
-            if n_dot_l > 0.0 {
-                let covered = lobe(alpha, n_dot_l) * n_dot_l * texel_solid_angle(texel, source_edge);
-                sum += covered * textureLoad(coarse, texel, 6u * cube + face, 0).rgb;
-                weight += covered;
-            }
-        }
+        everything += largest(textureLoad(source, vec2<u32>(0u), 6u * cube + face, coarsest).rgb);
     }
-    return sum / weight;
-}
-
-fn sampled(cube: u32, normal: vec3<f32>, alpha: f32, count: u32) -> vec3<f32> {
-    let frame = frame_around(normal);
-    let source_edge = f32(textureDimensions(source).x);
-    // Texels of the source in all directions.
-    let texels = 6.0 * square(source_edge);
+    // The weights of a narrow lobe add up to 4 pi.
+    let most_in_doubt = params.doubt * 4.0 * PI * everything / 6.0;
+    // The chord over which the lobe keeps most of its height, squared.
+    let core = square(min(2.0 * alpha, LONGEST_CORE));
+    var level = coarsest;
+    // The cell: its face, and below that two bits for each level.
+    var cell = 0u;
     var sum = vec3<f32>(0.0);
     var weight = 0.0;
-    for (var i = 0u; i < count; i++) {
-        // The middle of each share.
-        let number = sobol_2d(i) + 0.5 / f32(count);
-        let along_squared = (1.0 - number.x) / (1.0 + (square(alpha) - 1.0) * number.x);
-        let along = sqrt(along_squared);
-        let across = sqrt(max(0.0, 1.0 - along_squared));
-        let angle = 2.0 * PI * number.y;
-        let n_dot_l = 2.0 * along_squared - 1.0;
-        if n_dot_l > 0.0 {
-            let to_light = frame * vec3<f32>(2.0 * along * across * vec2<f32>(cos(angle), sin(angle)), n_dot_l);
-            let density = lobe(alpha, n_dot_l) / (4.0 * PI);
-            let level = 0.5 * log2(texels / (4.0 * PI * density * f32(count))) + LEVEL_BIAS;
-            sum += n_dot_l * textureSampleLevel(source, linear_clamp, to_light, cube, max(level, 0.0)).rgb;
-            weight += n_dot_l;
+    loop {
+        let depth = coarsest - level;
+        let face = cell >> (2u * depth);
+        if face >= 6u {
+            break;
+        }
+        let edge = f32(1u << depth);
+        let texel = vec2<u32>(every_second_bit(cell), every_second_bit(cell >> 1u)) & vec2<u32>((1u << depth) - 1u);
+        let place = place_on_face(vec2<f32>(texel) + 0.5, edge);
+        let along = inverseSqrt(1.0 + dot(place, place));
+        let n_dot_l = dot(normal, cube_direction(face, place)) * along;
+        // As an angle.
+        let size = 2.0 / edge * along;
+        // Half a diagonal below the horizon there is nothing of it above.
+        if n_dot_l > -0.70710678 * size {
+            // By the chord from the axis to its middle.
+            let relative_size = size / sqrt(core + 2.0 - 2.0 * n_dot_l);
+            let covered = lobe(alpha, n_dot_l) * max(n_dot_l, 0.0) * square(size) * along;
+            let light = covered * textureLoad(source, texel, 6u * cube + face, level).rgb;
+            if level > 0u && (relative_size > params.cell_size || largest(light) * relative_size > most_in_doubt) {
+                level -= 1u;
+                cell <<= 2u;
+                continue;
+            }
+            sum += light;
+            weight += covered;
+        }
+        cell += 1u;
+        while level < coarsest && (cell & 3u) == 0u {
+            cell >>= 2u;
+            level += 1u;
         }
     }
     return sum / weight;
@@ -95,16 +106,10 @@ fn sampled(cube: u32, normal: vec3<f32>, alpha: f32, count: u32) -> vec3<f32> {
 
 @fragment
 fn prefilter(@builtin(position) position: vec4<f32>) -> Targets {
-    let level = (params.i / 6u) % levels;
-    let cube = params.i / (6u * levels);
-    let level_edge = f32(max(edge >> level, 1u));
+    let step = (params.i / 6u) % steps;
+    let cube = params.i / (6u * steps);
+    let level_edge = f32(max(edge >> (step / STEPS_PER_LEVEL), 1u));
     let normal = normalize(cube_direction(params.i % 6u, place_on_face(position.xy, level_edge)));
-    let alpha = ggx_alpha(level_roughness(level, levels));
-    var radiance: vec3<f32>;
-    if alpha >= LEAST_SUMMED_ALPHA {
-        radiance = summed(cube, normal, alpha);
-    } else {
-        radiance = sampled(cube, normal, alpha, params.samples << level);
-    }
-    return Targets(vec4<f32>(round_half(radiance), 1.0));
+    let alpha = ggx_alpha(step_roughness(step, steps));
+    return Targets(vec4<f32>(round_half(lobe_mean(cube, normal, alpha)), 1.0));
 }

@@ -12,6 +12,7 @@ mod antialiasing;
 mod area;
 mod brdf;
 mod changes;
+mod environment;
 mod forward;
 mod irradiance;
 mod many_lights;
@@ -36,11 +37,12 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 19] = [
+    let groups: [&[Case]; 20] = [
         antialiasing::CASES,
         area::CASES,
         brdf::CASES,
         changes::CASES,
+        environment::CASES,
         forward::CASES,
         irradiance::CASES,
         many_lights::CASES,

@@ -108,10 +108,8 @@ fn mend(image: &mut LinearImage, file: &Text, problems: &mut Problems) {
 
 fn warn_of_shape(file: &Text, image: &LinearImage, problems: &mut Problems) {
     if image.width != 2 * image.height {
-        let message = format!(
-            "`{}` has {} x {} texels: an equirectangular image is twice as wide as high",
-            file.value, image.width, image.height
-        );
+        let message =
+            format!("`{}` has {} x {} texels: an equirectangular image is twice as wide as high", file.value, image.width, image.height);
         problems.0.push(Diagnostic::warning("scene::sky-shape", message).at(file.span, "it is stretched over the sky"));
     }
 }
@@ -122,9 +120,11 @@ fn join_faces(files: &[Text], faces: &[LinearImage], problems: &mut Problems) ->
     let odd: Vec<_> = files.iter().zip(faces).filter(|(_, face)| (face.width, face.height) != (edge, edge)).collect();
     for (file, face) in &odd {
         let message = format!("`{}` has {} x {} texels", file.value, face.width, face.height);
-        problems.add(Diagnostic::error("scene::sky-faces", message).at(file.span, "this face").hint(format!(
-            "all six faces must be squares of one size; the first one is {edge} texels wide"
-        )));
+        problems.add(
+            Diagnostic::error("scene::sky-faces", message)
+                .at(file.span, "this face")
+                .hint(format!("all six faces must be squares of one size; the first one is {edge} texels wide")),
+        );
     }
     if !odd.is_empty() {
         return None;
