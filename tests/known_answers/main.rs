@@ -1,4 +1,5 @@
-//! Pictures whose pixels are known from formulas: light, materials, shadows, tone mapping, orientation; and what runs leave behind.
+//! Pictures whose pixels are known from formulas: light, materials, shadows, reflections, tone mapping, orientation; and what runs leave
+//! behind.
 //!
 //! Each rendering is at most 256 by 256 pixels. Tolerances stand near the errors that were measured on Mesa's software driver, which
 //! each test states. Half floats, in which light is accumulated, are good to 2^-10 = 0.098 %: that driver rounds them towards zero.
@@ -19,6 +20,7 @@ mod masks;
 mod materials;
 mod noon;
 mod orientation;
+mod reflection_probes;
 mod runs;
 mod shadow_kinds;
 mod shadows;
@@ -36,7 +38,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 19] = [
+    let groups: [&[Case]; 20] = [
         antialiasing::CASES,
         area::CASES,
         brdf::CASES,
@@ -48,6 +50,7 @@ fn main() {
         materials::CASES,
         noon::CASES,
         orientation::CASES,
+        reflection_probes::CASES,
         runs::CASES,
         shadow_kinds::CASES,
         shadows::CASES,
