@@ -67,6 +67,23 @@ fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
     assert_eq!(harness.frame(), ["gbuffer", "light", "skybox.sky", "compose", "transparent", "display.expose"]);
 }
 
+/// Cascades follow the camera, and no face of a probe reads them.
+#[test]
+fn a_camera_that_moves_leaves_what_probes_capture() {
+    let mut harness = settled(&Case { pipeline: "pipelines/mirror.ron", ..PBR });
+    assert!(harness.is_retained("captured.cubes"));
+    let from_camera = |input: &Input| match input {
+        Input::Table(name, _) => name == "camera" || name == "cascades",
+        Input::View(view) => matches!(view.kind, ViewKind::Camera | ViewKind::Cascade(_)),
+        Input::Draws(_, view, _) => matches!(view, ViewKind::Camera | ViewKind::Cascade(_)),
+        _ => false,
+    };
+    assert!(harness.change(from_camera) > 0);
+    let ran = harness.frame();
+    assert!(ran.iter().any(|name| name.starts_with("sun_shadows.")) && ran.iter().any(|name| name == "reflect"), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("captured.")), "{ran:?}");
+}
+
 #[test]
 fn a_light_that_moves_draws_its_own_six_faces() {
     let mut harness = settled(&PBR);
