@@ -107,13 +107,26 @@ pub fn for_what_they_see() -> Result<(), Failed> {
     if !faces(&sun_rises).iter().eq(ALL) || captured || !cascades {
         return Err(format!("below a sun a camera that moves ran {ran:?}").into());
     }
+    is_fresh(&session, &mut world)
+}
+
+/// Whether the picture is, bit for bit, that of a session that starts with the world as it is.
+fn is_fresh(session: &Session, world: &mut World) -> Result<(), Failed> {
+    let mut fresh = shot(32, 16, OUTPUTS).session(world)?;
+    settle(&mut fresh)?;
+    for output in OUTPUTS {
+        let image = |session: &Session| session.read_output(output).map_err(shown);
+        if image(session)? != image(&fresh)? {
+            return Err(format!("`{output}` is another picture in a fresh session").into());
+        }
+    }
     Ok(())
 }
 
 /// One face a frame, until all are new.
 pub fn in_turns() -> Result<(), Failed> {
     let mut world = world(&scene())?;
-    let mut session = shot(32, 16, &["radiance"]).set("faces_per_frame", 1).poisoned_session(&mut world)?;
+    let mut session = shot(32, 16, OUTPUTS).set("faces_per_frame", 1).poisoned_session(&mut world)?;
     settle(&mut session)?;
     edit(&mut world, "lamp", |lamp: &mut LocalLight| lamp.intensity = 1.0)?;
     let frames = after(&mut session, &mut world)?;
@@ -121,5 +134,5 @@ pub fn in_turns() -> Result<(), Failed> {
     if each.iter().any(|faces| faces.len() > 1) || !faces(&frames).iter().eq(ALL) {
         return Err(format!("frames ran the faces {each:?}").into());
     }
-    Ok(())
+    is_fresh(&session, &mut world)
 }
