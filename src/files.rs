@@ -21,6 +21,7 @@ static SCENES: &[(&str, &str)] = &[
     ("hall.ron", include_str!("../scenes/hall.ron")),
     ("light_kinds.ron", include_str!("../scenes/light_kinds.ron")),
     ("materials.ron", include_str!("../scenes/materials.ron")),
+    ("mirrors.ron", include_str!("../scenes/mirrors.ron")),
     ("probe_grid.ron", include_str!("../scenes/probe_grid.ron")),
     ("room.ron", include_str!("../scenes/room.ron")),
     ("scene1.ron", include_str!("../scenes/scene1.ron")),

@@ -4,7 +4,7 @@
 use std::path::Path;
 
 use luminaire::files::DiskFiles;
-use luminaire::graph::compile::CompileInput;
+use luminaire::graph::compile::{CompileInput, compile};
 use luminaire::graph::device::DeviceFacts;
 use luminaire::graph::harness::Harness;
 use luminaire::graph::plan::Input;
@@ -65,6 +65,34 @@ fn a_camera_that_moves_leaves_the_shadow_maps_of_local_lights() {
     };
     assert!(harness.change(from_camera) > 0);
     assert_eq!(harness.frame(), ["gbuffer", "light", "skybox.sky", "compose", "transparent", "display.expose"]);
+}
+
+/// A loop that takes turns makes frames depend on each other; one that has a turn for all does not.
+#[test]
+fn faces_that_all_run_at_once_carry_nothing_over() {
+    let carries_over = |faces: &str| {
+        let sets = [("faces_per_frame", faces)];
+        let case = Case { pipeline: "pipelines/mirror.ron", sets: &sets, ..PBR };
+        case.compile(|input| compile(input).plan.map(|plan| plan.carries_over()))
+    };
+    assert_eq!(["5", "6", "384"].map(carries_over), [Some(true), Some(false), Some(false)]);
+}
+
+/// Cascades follow the camera, and no face of a probe reads them.
+#[test]
+fn a_camera_that_moves_leaves_what_probes_capture() {
+    let mut harness = settled(&Case { pipeline: "pipelines/mirror.ron", ..PBR });
+    assert!(harness.is_retained("captured.cubes"));
+    let from_camera = |input: &Input| match input {
+        Input::Table(name, _) => name == "camera" || name == "cascades",
+        Input::View(view) => matches!(view.kind, ViewKind::Camera | ViewKind::Cascade(_)),
+        Input::Draws(_, view, _) => matches!(view, ViewKind::Camera | ViewKind::Cascade(_)),
+        _ => false,
+    };
+    assert!(harness.change(from_camera) > 0);
+    let ran = harness.frame();
+    assert!(ran.iter().any(|name| name.starts_with("sun_shadows.")) && ran.iter().any(|name| name == "reflect"), "{ran:?}");
+    assert!(!ran.iter().any(|name| name.starts_with("captured.")), "{ran:?}");
 }
 
 #[test]

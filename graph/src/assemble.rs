@@ -205,7 +205,21 @@ impl Plan {
     /// Whether an image depends on the frames before it, and not on the state of its inputs alone: something is remembered, gathered or
     /// spread over frames, or runs in every frame.
     pub fn carries_over(&self) -> bool {
-        self.steps.iter().any(|step| step.run != Run::OnChange || matches!(step.kind, StepKind::Remember { .. }))
+        self.steps.iter().any(|step| match step.run {
+            Run::OnChange => matches!(step.kind, StepKind::Remember { .. }),
+            Run::EveryFrame | Run::Accumulate(_) => true,
+            Run::Spread { spread, .. } => self.takes_turns(spread),
+        })
+    }
+
+    /// Whether what is due of a loop may need more than one frame.
+    fn takes_turns(&self, spread: u32) -> bool {
+        let iterations = |step: &Step| match step.run {
+            Run::Spread { spread: own, iteration } if own == spread => step.batch.len().max(iteration as usize + 1),
+            _ => 0,
+        };
+        let all = self.steps.iter().map(iterations).max().unwrap_or(0);
+        self.spreads.get(spread as usize).is_none_or(|spread| spread.rounds > 1 || (spread.per_frame as usize) < all)
     }
 
     /// The memory kind that a resource needs.

@@ -13,6 +13,10 @@ const SEAM: f32 = 0.1;
 // The part of the greatest distance over which shadows fade out.
 const FADE: f32 = 0.1;
 
+// How many cascades each directional light has in the slots `cascade_maps` and `cascades`; -1 where these are those of the scene's own
+// tables, which say it.
+override cascades_each: i32 = -1;
+
 // Which cascade shadows a point.
 struct CascadeChoice {
     // Its number, the finest is 0. Without cascades there are none.
@@ -24,8 +28,15 @@ struct CascadeChoice {
     strength: f32,
 }
 
+fn cascade_count(light: u32) -> u32 {
+    if cascades_each >= 0 {
+        return u32(cascades_each);
+    }
+    return directional_lights[light].cascades;
+}
+
 fn choose_cascade(light: u32, point: SurfacePoint) -> CascadeChoice {
-    var choice = CascadeChoice(0u, directional_lights[light].cascades, 1.0, 1.0);
+    var choice = CascadeChoice(0u, cascade_count(light), 1.0, 1.0);
     let first = light * choice.count;
     if choice.count == 0u || first + choice.count > textureNumLayers(cascade_maps) {
         choice.count = 0u;

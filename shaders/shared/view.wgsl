@@ -1,5 +1,5 @@
-// The view that a Draw draws from: the published table `view`. It is the camera, or a light's shadow view, as the pass says in
-// its pipeline; a vertex shader that uses `view` serves them all.
+// The view that a Draw draws from: the published table `view`. It is the camera, a light's shadow view or a face of a probe's
+// cube, as the pass says in its pipeline; a vertex shader that uses `view` serves them all.
 
 #import "shared/eye.wgsl"
 

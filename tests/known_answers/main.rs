@@ -1,4 +1,5 @@
-//! Pictures whose pixels are known from formulas: light, materials, shadows, tone mapping, orientation; and what runs leave behind.
+//! Pictures whose pixels are known from formulas: light, materials, shadows, reflections, tone mapping, orientation; and what runs leave
+//! behind.
 //!
 //! Each rendering is at most 256 by 256 pixels. Tolerances stand near the errors that were measured on Mesa's software driver, which
 //! each test states. Half floats, in which light is accumulated, are good to 2^-10 = 0.098 %: that driver rounds them towards zero.
@@ -20,6 +21,7 @@ mod masks;
 mod materials;
 mod noon;
 mod orientation;
+mod reflection_probes;
 mod runs;
 mod shadow_kinds;
 mod shadows;
@@ -50,6 +52,7 @@ fn main() {
         materials::CASES,
         noon::CASES,
         orientation::CASES,
+        reflection_probes::CASES,
         runs::CASES,
         shadow_kinds::CASES,
         shadows::CASES,

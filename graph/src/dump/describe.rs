@@ -165,6 +165,8 @@ pub(super) fn view(kind: ViewKind) -> String {
         ViewKind::PointLight(light, face) => format!("point light {light}, face {face}"),
         ViewKind::SpotLight(light) => format!("spot light {light}"),
         ViewKind::RectangleLight(light, face) => format!("rectangle of light {light}, face {face}"),
+        ViewKind::WholeScene(light) => format!("directional light {light}, whole scene"),
+        ViewKind::ReflectionProbe(probe, face) => format!("reflection probe {probe}, face {face}"),
     }
 }
 

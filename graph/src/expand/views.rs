@@ -5,19 +5,24 @@ use crate::published::{CascadeSplit, CascadeView, Positive, ViewKind};
 use crate::validate::types::{CascadeDecl, PlacedExpr, View};
 
 impl Unroller<'_, '_> {
-    /// The view of a pass; `None` if a number of it is wrong. That the light exists is for the scene to say.
+    /// The view of a pass; `None` if a number of it is wrong. That the light or probe exists is for the scene to say.
     pub(super) fn view(&mut self, view: &View, name: &str) -> Option<ViewKind> {
         Some(match view {
             View::Camera => ViewKind::Camera,
             View::DirectionalLight(index) => ViewKind::DirectionalLight(self.small(index, "the light of", name)?),
+            View::WholeScene(index) => ViewKind::WholeScene(self.small(index, "the light of", name)?),
             View::SpotLight(index) => ViewKind::SpotLight(self.small(index, "the light of", name)?),
             View::PointLight(index, face) => {
-                let (light, face) = self.cube_face(index, face, name)?;
+                let (light, face) = self.cube_face(index, "the light of", face, name)?;
                 ViewKind::PointLight(light, face)
             }
             View::RectangleLight(index, face) => {
-                let (light, face) = self.cube_face(index, face, name)?;
+                let (light, face) = self.cube_face(index, "the light of", face, name)?;
                 ViewKind::RectangleLight(light, face)
+            }
+            View::ReflectionProbe(index, face) => {
+                let (probe, face) = self.cube_face(index, "the probe of", face, name)?;
+                ViewKind::ReflectionProbe(probe, face)
             }
             View::Cascade(cascade) => {
                 let CascadeDecl { light, index, count, distance, lambda, snap } = &**cascade;
@@ -39,14 +44,14 @@ impl Unroller<'_, '_> {
         })
     }
 
-    /// A light, and a face of its cube.
-    fn cube_face(&mut self, light: &PlacedExpr, face: &PlacedExpr, name: &str) -> Option<(u32, u32)> {
-        let (light, index) = (self.small(light, "the light of", name)?, self.small(face, "the face of", name)?);
+    /// A light or probe, and a face of its cube.
+    fn cube_face(&mut self, of: &PlacedExpr, what: &str, face: &PlacedExpr, name: &str) -> Option<(u32, u32)> {
+        let (of, index) = (self.small(of, what, name)?, self.small(face, "the face of", name)?);
         if index > 5 {
             let reason = format!("a cube has faces 0 to 5, not {index}");
             return self.environment.bad(&format!("the face of `{name}`"), reason, face.span);
         }
-        Some((light, index))
+        Some((of, index))
     }
 
     /// A number from 0 to `most`.

@@ -154,6 +154,10 @@ pub enum ViewKind {
     SpotLight(u32),
     /// A cube face of a rectangle of light, by its index among those, and the face.
     RectangleLight(u32, u32),
+    /// The shadow view of a directional light over all of the scene, whatever the camera sees, by its index among directional lights.
+    WholeScene(u32),
+    /// A cube face of a reflection probe, by its index among those, and the face.
+    ReflectionProbe(u32, u32),
 }
 
 /// Which part of the camera's frustum a view of a directional light is fitted to.

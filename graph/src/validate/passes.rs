@@ -101,6 +101,11 @@ fn drawn_from(scope: &mut Scope<'_>, view: &ViewDoc) -> Option<View> {
             let (index, face) = (scope.expression(index), scope.expression(face));
             Some(View::RectangleLight(index?, face?))
         }
+        ViewDoc::WholeScene(index) => scope.expression(index).map(View::WholeScene),
+        ViewDoc::ReflectionProbe(index, face) => {
+            let (index, face) = (scope.expression(index), scope.expression(face));
+            Some(View::ReflectionProbe(index?, face?))
+        }
     }
 }
 

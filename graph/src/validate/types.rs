@@ -340,6 +340,8 @@ pub enum View {
     PointLight(PlacedExpr, PlacedExpr),
     SpotLight(PlacedExpr),
     RectangleLight(PlacedExpr, PlacedExpr),
+    WholeScene(PlacedExpr),
+    ReflectionProbe(PlacedExpr, PlacedExpr),
 }
 
 /// A part of what the camera sees, along a directional light.

@@ -69,6 +69,25 @@ pub(super) fn rows(views: &[ViewRequest], fitted: &[Option<SunView>], camera: &C
     rows
 }
 
+/// The table `whole_scenes`: of each light up to the last that has such a view, one row. What no view shows is zero.
+pub(super) fn whole_rows(views: &[ViewRequest], fitted: &[Option<SunView>]) -> Vec<CascadeRow> {
+    let of = |view: &ViewRequest| if let ViewKind::WholeScene(light) = view.kind { Some(light as usize) } else { None };
+    let mut rows: Vec<CascadeRow> = Vec::new();
+    for (light, view) in views.iter().zip(fitted).filter_map(|(request, view)| Some((of(request)?, view.as_ref()?))) {
+        rows.resize((light + 1).max(rows.len()), <CascadeRow as bytemuck::Zeroable>::zeroed());
+        if let Some(row) = rows.get_mut(light) {
+            *row = CascadeRow {
+                shadow_from_world: view.table.projection_from_world,
+                texel_size: single(view.texel_size),
+                depth_range: single(view.depth_range),
+                end: VERY_FAR,
+                fade_end: VERY_FAR,
+            };
+        }
+    }
+    rows
+}
+
 #[cfg(test)]
 mod tests {
     use glam::{DVec3, Vec3};

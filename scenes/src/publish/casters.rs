@@ -1,6 +1,6 @@
-//! Which objects each face of a shadow cube sees: those of point lights and of rectangles of light.
+//! Which objects each face of a cube sees: those of point lights, rectangles of light and reflection probes.
 //!
-//! An object is seen by a face if its bounds come within the lamp's reach and meet the face's pyramid. The cube of a rectangle may be drawn
+//! An object is seen by a face if its bounds come within the cube's reach and meet the face's pyramid. The cube of a rectangle may be drawn
 //! from any point of it: bounds are as much larger for it as such a point may be off its middle. Kept from frame to frame: a lamp
 //! that moves asks the spatial index, an object that moves is tested against every lamp. Accepted downside: bounds are boxes, so that
 //! a face may hold an object that it just misses.
@@ -15,11 +15,12 @@ use super::cube::FACES;
 use super::objects::{Changed, Objects};
 use crate::world::{Aabb, Kind, ObjectSlot, SpatialIndex};
 
-/// What has a shadow cube, by slot among its kind.
+/// What has a cube, by slot among its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) enum Cube {
     Point(u32),
     Rectangle(u32),
+    Probe(u32),
 }
 
 impl Cube {
@@ -28,6 +29,7 @@ impl Cube {
         match view {
             ViewKind::PointLight(light, face) => Some((Cube::Point(light), face)),
             ViewKind::RectangleLight(light, face) => Some((Cube::Rectangle(light), face)),
+            ViewKind::ReflectionProbe(probe, face) => Some((Cube::Probe(probe), face)),
             _ => None,
         }
     }
@@ -36,6 +38,7 @@ impl Cube {
         match self {
             Cube::Point(light) => ViewKind::PointLight(light, face),
             Cube::Rectangle(light) => ViewKind::RectangleLight(light, face),
+            Cube::Probe(probe) => ViewKind::ReflectionProbe(probe, face),
         }
     }
 }
@@ -46,8 +49,10 @@ pub(super) struct Center {
     pub(super) position: DVec3,
     /// It may be drawn from points that are so far off.
     pub(super) radius: f64,
-    /// Near and far plane of the faces. Nothing beyond the far one throws a shadow.
+    /// Near and far plane of the faces.
     pub(super) planes: [f64; 2],
+    /// Nothing farther from the position counts.
+    pub(super) reach: f64,
 }
 
 /// What the faces of one cube see.
@@ -78,12 +83,11 @@ impl Casters {
         self.0.retain(|cube, _| wanted.contains(cube));
         let mut others = BTreeSet::new();
         for cube in wanted {
-            let Some(Center { position, radius, planes: [_, far] }) = center(cube) else {
+            let Some(Center { position, radius, reach, .. }) = center(cube) else {
                 let gone = self.0.remove(&cube).is_some();
                 others.extend((0..6).filter(|_| gone).map(|face| cube.face(face)));
                 continue;
             };
-            let reach = far + radius;
             let different = match self.0.get_mut(&cube) {
                 Some(seen) if seen.position == position && seen.reach == reach && seen.radius == radius => {
                     seen.test(objects, changed.slots.iter().copied())

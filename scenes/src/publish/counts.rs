@@ -5,18 +5,19 @@ use luminaire_graph::published::SceneCounts;
 
 use super::objects::Coverage;
 use super::schema::COUNT_NAMES;
-use crate::world::{DirectionalSlot, LocalSlot, Materials, MeshInstance, PointSlot, RectangleSlot, SpotSlot};
+use crate::world::{DirectionalSlot, LocalSlot, Materials, MeshInstance, PointSlot, ProbeSlot, RectangleSlot, SpotSlot};
 
-/// The counts, under [`COUNT_NAMES`]. Those of lights are the rows of the tables, as loops over them need: a slot that was freed below
+/// The counts, under [`COUNT_NAMES`]. Those of lights and probes are the rows of the tables, as loops over them need: a slot that was freed below
 /// others in use still counts. All others are entities, hidden ones among them, so that no plan has to be made anew for what is hidden
 /// and shown.
 pub fn counts(world: &World) -> SceneCounts {
-    let lights = [
+    let rows = [
         rows(world, |slot: &DirectionalSlot| slot.0),
         rows(world, |slot: &PointSlot| slot.0),
         rows(world, |slot: &SpotSlot| slot.0),
         rows(world, |slot: &LocalSlot| slot.0),
         rows(world, |slot: &RectangleSlot| slot.0),
+        rows(world, |slot: &ProbeSlot| slot.0),
     ];
     let mut surfaces = [0; 3];
     if let (Some(mut query), Some(materials)) = (world.try_query::<&MeshInstance>(), world.get_resource::<Materials>()) {
@@ -26,7 +27,7 @@ pub fn counts(world: &World) -> SceneCounts {
             }
         }
     }
-    COUNT_NAMES.iter().zip(lights.into_iter().chain(surfaces)).map(|(name, value)| ((*name).to_owned(), value)).collect()
+    COUNT_NAMES.iter().zip(rows.into_iter().chain(surfaces)).map(|(name, value)| ((*name).to_owned(), value)).collect()
 }
 
 /// One more than the highest slot.

@@ -1,4 +1,4 @@
-//! The six views of a point light, for cube maps.
+//! The six views from a point, for cube maps.
 //!
 //! A lookup with a world direction returns what stands in that direction: WebGPU takes over the face selection of OpenGL and
 //! Vulkan ("Cube Map Face Selection"), whose faces are seen from inside in a left-handed frame. So these views mirror: the

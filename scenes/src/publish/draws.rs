@@ -12,6 +12,7 @@ use std::sync::Arc;
 use glam::DVec3;
 use luminaire_graph::published::{DrawBatch, DrawFilter, DrawList, Table, ViewKind};
 
+use super::casters::Cube;
 use super::geometry::MeshRange;
 use super::objects::{Changed, Coverage, Object, Objects};
 use super::projection::CameraView;
@@ -153,7 +154,7 @@ impl Kept {
                     first_instance: slots.len() as u32,
                     instance_count: 1,
                     // The frames of cube faces are left-handed, so the winding turns once more.
-                    mirrored: object.mirrored != matches!(view, ViewKind::PointLight(..) | ViewKind::RectangleLight(..)),
+                    mirrored: object.mirrored != Cube::of(view).is_some(),
                     double_sided: object.double_sided,
                 }),
             }

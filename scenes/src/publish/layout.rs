@@ -24,7 +24,7 @@ pub struct CameraTable {
     pub near: f32,
 }
 
-/// Uniform `view`: where a pass draws from. Shadow views run from 0 on the near plane to 1 on the far plane.
+/// Uniform `view`: where a pass draws from. All but the camera's run from 0 on the near plane to 1 on the far plane.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs)]
@@ -80,7 +80,7 @@ pub struct DirectionalRow {
     pub pad: [u32; 3],
 }
 
-/// An element of `cascades`.
+/// An element of `cascades`, and of `whole_scenes`.
 #[repr(C)]
 #[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
 #[allow(missing_docs)]
@@ -171,6 +171,22 @@ pub struct RectangleRow {
     /// Near plane of the faces of its shadow cube, metres.
     pub near: f32,
     /// Far plane of the faces, metres; 0 where there is no light.
+    pub far: f32,
+    pub pad: [f32; 3],
+}
+
+/// An element of `reflection_probes`.
+#[repr(C)]
+#[derive(Debug, Clone, Copy, PartialEq, Pod, Zeroable)]
+#[allow(missing_docs)]
+pub struct ProbeRow {
+    /// From where it captures: the middle of its box.
+    pub position: [f32; 3],
+    /// Near plane of the cube faces, metres.
+    pub near: f32,
+    /// World to the box, whose corners are at -1 and 1.
+    pub box_from_world: Columns,
+    /// Far plane of the faces, metres; 0 where there is no probe.
     pub far: f32,
     pub pad: [f32; 3],
 }

@@ -6,6 +6,7 @@ use bevy_ecs::prelude::World;
 use glam::{DVec3, Vec3};
 use luminaire_graph::published::{ViewKind, ViewRequest};
 
+use super::casters::Center;
 use super::layout::{DirectionalRow, LocalRow, PointRow, SpotRow};
 use super::projection::{single, vector};
 use super::reach::{Reach, reach};
@@ -38,6 +39,14 @@ pub(super) struct Lamp {
     pub(super) cone: Option<Cone>,
     pub(super) reach: Reach,
     shadow: Shadow,
+}
+
+impl Lamp {
+    /// From where its shadow cube is drawn.
+    pub(super) fn center(&self) -> Center {
+        let planes = self.reach.planes;
+        Center { position: self.position, radius: 0.0, planes, reach: planes[1] }
+    }
 }
 
 /// Which shadow map a point or spot light has, by its slot among those of the kind.

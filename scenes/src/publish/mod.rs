@@ -20,6 +20,7 @@ mod lights;
 mod materials;
 mod mips;
 mod objects;
+mod probes;
 mod projection;
 mod publisher;
 mod reach;
@@ -38,8 +39,8 @@ mod tests;
 
 pub use counts::counts;
 pub use layout::{
-    CameraTable, CascadeRow, Columns, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, PointRow, RectangleRow,
-    SpotRow, TEXTURES, ViewTable, flags,
+    CameraTable, CascadeRow, Columns, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, PointRow, ProbeRow,
+    RectangleRow, SpotRow, TEXTURES, ViewTable, flags,
 };
 pub use publisher::Publisher;
 pub use request::{PublishRequest, Published};

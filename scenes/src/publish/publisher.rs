@@ -9,7 +9,7 @@ use indexmap::IndexMap;
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{CascadeView, PublishedScene, Table, ViewKind};
 
-use super::casters::{Center, Cube};
+use super::casters::Cube;
 use super::draws::{Distance, DrawInput, Draws};
 use super::frustum::Frustum;
 use super::geometry::{self, Geometry};
@@ -22,7 +22,7 @@ use super::spot::SpotView;
 use super::sun::SunView;
 use super::texture_cache::TextureCache;
 use super::visible::Visible;
-use super::{cascades, environment, lights, materials, rectangles};
+use super::{cascades, environment, lights, materials, probes, rectangles};
 use crate::world::{Environment, Materials, Meshes, camera_pose, update};
 
 /// Publishes a world, and remembers what it published.
@@ -43,8 +43,8 @@ pub struct Publisher {
 
 impl Publisher {
     /// Publishes the world as it is now, and brings it up to date first ([`update`]).
-    /// Errors: `world::unknown-camera`, `publish::unknown-light`, `publish::unknown-face`, `publish::mixed-cascades`,
-    /// `publish::too-much-geometry`.
+    /// Errors: `world::unknown-camera`, `publish::unknown-light`, `publish::unknown-probe`, `publish::unknown-face`,
+    /// `publish::mixed-cascades`, `publish::too-much-geometry`.
     pub fn publish(&mut self, world: &mut World, request: &PublishRequest<'_>) -> Result<Published, Vec<Diagnostic>> {
         if self.seen.is_some_and(|(known, _)| known != world.id()) {
             *self = Publisher::default();
@@ -68,7 +68,8 @@ impl Publisher {
         let bounds = self.objects.bounds;
         let lights = lights::collect(world, bounds, self.objects.solid_bounds);
         let rectangles = rectangles::rows(world, self.objects.solid_bounds);
-        problems.extend(request::check(request, &lights, rectangles.len()));
+        let probes = probes::rows(world);
+        problems.extend(request::check(request, &lights, rectangles.len(), probes.len()));
         let pose = camera_pose(world, request.camera, bounds, request.aspect()).map_err(|problem| problems.push(problem)).ok();
 
         let wanted = request.draw_lists;
@@ -81,35 +82,37 @@ impl Publisher {
         let solid = self.objects.solid_bounds;
         let suns: Vec<Option<SunView>> = request.views.iter().map(|view| request::sun_view(view, &camera, &lights, solid)).collect();
         let frusta = |view| match view {
-            ViewKind::DirectionalLight(light) | ViewKind::Cascade(CascadeView { light, .. }) => {
+            ViewKind::DirectionalLight(light) | ViewKind::WholeScene(light) | ViewKind::Cascade(CascadeView { light, .. }) => {
                 // A light that is not there has no shadows.
                 let sun = lights.suns.get(light as usize).copied().flatten();
                 let maps = request.views.iter().zip(&suns).filter(|(request, _)| request.kind == view && sun.is_some());
                 maps.filter_map(|(_, map)| map.as_ref().map(|map| map.casters.clone())).collect()
             }
             ViewKind::SpotLight(light) => lights.spot(light).map(|lamp| SpotView::of(&lamp).casters).into_iter().collect(),
-            ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::RectangleLight(..) => vec![Frustum::of_camera(&camera)],
+            ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::RectangleLight(..) | ViewKind::ReflectionProbe(..) => {
+                vec![Frustum::of_camera(&camera)]
+            }
         };
         let center = |cube| match cube {
-            Cube::Point(light) => {
-                lights.point(light).map(|lamp| Center { position: lamp.position, radius: 0.0, planes: lamp.reach.planes })
-            }
+            Cube::Point(light) => lights.point(light).map(|lamp| lamp.center()),
             Cube::Rectangle(light) => rectangles::center(&rectangles, light),
+            Cube::Probe(probe) => probes::center(&probes, probe),
         };
         let views = self.visible.update(world, &wanted.iter().map(|(_, view)| *view).collect(), frusta, center, &self.objects, &changed);
         let (visible, ranges) = (&self.visible, &self.geometry.ranges);
         let input = DrawInput { objects: &self.objects, changed: &changed, ranges, visible, views: &views };
         let draw_lists = self.draws.update(wanted, &input, |view| match view {
             ViewKind::Camera => Distance::from_camera(&camera),
-            ViewKind::DirectionalLight(light) | ViewKind::Cascade(CascadeView { light, .. }) => Distance::Along(-lights.to_sun(light)),
-            ViewKind::PointLight(light, _) => Distance::From(center(Cube::Point(light)).map_or(DVec3::ZERO, |center| center.position)),
-            ViewKind::RectangleLight(light, _) => {
-                Distance::From(center(Cube::Rectangle(light)).map_or(DVec3::ZERO, |center| center.position))
+            ViewKind::DirectionalLight(light) | ViewKind::WholeScene(light) | ViewKind::Cascade(CascadeView { light, .. }) => {
+                Distance::Along(-lights.to_sun(light))
+            }
+            ViewKind::PointLight(..) | ViewKind::RectangleLight(..) | ViewKind::ReflectionProbe(..) => {
+                Distance::From(Cube::of(view).and_then(|(cube, _)| center(cube)).map_or(DVec3::ZERO, |center| center.position))
             }
             ViewKind::SpotLight(light) => Distance::From(lights.spot(light).map_or(DVec3::ZERO, |lamp| lamp.position)),
         });
         let view_bytes = |(view, sun): (_, &Option<SunView>)| {
-            let table = sun.as_ref().map_or_else(|| request::view_table(view, &camera, &lights, &rectangles), |sun| sun.table);
+            let table = sun.as_ref().map_or_else(|| request::view_table(view, &camera, &lights, center), |sun| sun.table);
             bytemuck::bytes_of(&table).to_vec()
         };
         let views = request.views.iter().zip(&suns).map(view_bytes).collect();
@@ -120,10 +123,12 @@ impl Publisher {
         self.set("environment", &[environment]);
         self.set("directional_lights", &lights.directional_rows(request.views, &suns));
         self.set("cascades", &cascades::rows(request.views, &suns, &camera, solid));
+        self.set("whole_scenes", &cascades::whole_rows(request.views, &suns));
         self.set("local_lights", &lights.local_rows());
         self.set("point_lights", &lights.point_rows());
         self.set("spot_lights", &lights.spot_rows());
         self.set("rectangle_lights", &rectangles);
+        self.set("reflection_probes", &probes);
         if !same_materials || !self.tables.contains_key("materials") {
             self.set("materials", &materials::rows(&materials));
         }

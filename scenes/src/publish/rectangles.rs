@@ -24,7 +24,8 @@ pub(super) fn rows(world: &mut World, solid: Option<Aabb>) -> Vec<RectangleRow> 
 pub(super) fn center(rows: &[RectangleRow], slot: u32) -> Option<Center> {
     let row = rows.get(slot as usize).filter(|row| row.area > 0.0)?;
     let [near, far] = [row.near, row.far].map(f64::from);
-    Some(Center { position: Vec3::from(row.position).as_dvec3(), radius: f64::from(row.radius), planes: [near, far] })
+    let radius = f64::from(row.radius);
+    Some(Center { position: Vec3::from(row.position).as_dvec3(), radius, planes: [near, far], reach: far + radius })
 }
 
 /// A rectangle is stretched as its mesh is, and keeps its luminance. One that a transform mirrors faces where its mesh does.

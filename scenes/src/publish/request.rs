@@ -3,13 +3,17 @@
 use luminaire_graph::diagnostic::Diagnostic;
 use luminaire_graph::published::{DrawFilter, PublishedScene, ViewKind, ViewRequest};
 
-use super::layout::{RectangleRow, ViewTable};
+use super::casters::{Center, Cube};
+use super::cube;
+use super::layout::ViewTable;
 use super::lights::Lights;
 use super::projection::CameraView;
 use super::spot::SpotView;
 use super::sun::{self, SunView};
-use super::{cube, rectangles};
 use crate::world::Aabb;
+
+/// What messages call a probe.
+const PROBE: &str = "reflection probe";
 
 /// Everything that a plan needs of a scene.
 #[derive(Debug, Clone, Copy)]
@@ -42,32 +46,34 @@ pub struct Published {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Whether the lights and faces that are asked for exist.
-pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights, rectangles: usize) -> Vec<Diagnostic> {
+/// Whether the lights, probes and faces that are asked for exist. `rectangles` and `probes` are how many the scene has.
+pub(super) fn check(request: &PublishRequest<'_>, lights: &Lights, rectangles: usize, probes: usize) -> Vec<Diagnostic> {
     let mut kinds: Vec<ViewKind> = request.views.iter().map(|view| view.kind).chain(request.draw_lists.iter().map(|list| list.1)).collect();
     kinds.sort_unstable();
     kinds.dedup();
     let unknown = |kind: &str, index: u32, count: usize| {
-        Diagnostic::error("publish::unknown-light", format!("a view asks for {kind} light {index}, and the scene has {count}"))
-            .hint("count loops with the scene's counts, or let the pass stand only if the scene `has` such lights")
+        let (code, what) = if kind == PROBE { ("publish::unknown-probe", "probes") } else { ("publish::unknown-light", "lights") };
+        Diagnostic::error(code, format!("a view asks for {kind} {index}, and the scene has {count}"))
+            .hint(format!("count loops with the scene's counts, or let the pass stand only if the scene `has` such {what}"))
     };
     let [cubes, maps] = lights.cubes_and_maps();
     let mut problems: Vec<Diagnostic> = kinds
         .iter()
         .filter_map(|kind| {
-            let (name, light, count) = match *kind {
+            let (name, index, count) = match *kind {
                 ViewKind::Camera => return None,
-                ViewKind::DirectionalLight(light) => ("directional", light, lights.suns.len()),
-                ViewKind::Cascade(cascade) => ("directional", cascade.light, lights.suns.len()),
-                ViewKind::PointLight(light, _) => ("point", light, cubes),
-                ViewKind::SpotLight(light) => ("spot", light, maps),
-                ViewKind::RectangleLight(light, _) => ("rectangle", light, rectangles),
+                ViewKind::DirectionalLight(light) | ViewKind::WholeScene(light) => ("directional light", light, lights.suns.len()),
+                ViewKind::Cascade(cascade) => ("directional light", cascade.light, lights.suns.len()),
+                ViewKind::PointLight(light, _) => ("point light", light, cubes),
+                ViewKind::SpotLight(light) => ("spot light", light, maps),
+                ViewKind::RectangleLight(light, _) => ("rectangle light", light, rectangles),
+                ViewKind::ReflectionProbe(probe, _) => (PROBE, probe, probes),
             };
-            match *kind {
-                _ if light as usize >= count => Some(unknown(name, light, count)),
-                ViewKind::PointLight(_, face) | ViewKind::RectangleLight(_, face) if face > 5 => Some(Diagnostic::error(
+            match Cube::of(*kind) {
+                _ if index as usize >= count => Some(unknown(name, index, count)),
+                Some((_, face)) if face > 5 => Some(Diagnostic::error(
                     "publish::unknown-face",
-                    format!("a view asks for face {face} of {name} light {light}; a cube has the faces 0 to 5"),
+                    format!("a view asks for face {face} of {name} {index}; a cube has the faces 0 to 5"),
                 )),
                 _ => None,
             }
@@ -93,19 +99,21 @@ pub(super) fn sun_view(view: &ViewRequest, camera: &CameraView, lights: &Lights,
     match view.kind {
         ViewKind::DirectionalLight(light) => Some(sun::fit(lights.to_sun(light), camera, bounds, texels)),
         ViewKind::Cascade(cascade) => Some(sun::fit_cascade(lights.to_sun(cascade.light), camera, bounds, cascade, texels)),
-        ViewKind::Camera | ViewKind::PointLight(..) | ViewKind::SpotLight(_) | ViewKind::RectangleLight(..) => None,
+        ViewKind::WholeScene(light) => Some(sun::fit_whole(lights.to_sun(light), bounds, texels)),
+        ViewKind::Camera
+        | ViewKind::PointLight(..)
+        | ViewKind::SpotLight(_)
+        | ViewKind::RectangleLight(..)
+        | ViewKind::ReflectionProbe(..) => None,
     }
 }
 
-/// The table of a view that is no directional light's; zero where a light is not there, since nothing is drawn then.
-pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights, rectangles: &[RectangleRow]) -> ViewTable {
-    let table = match view.kind {
-        ViewKind::Camera | ViewKind::DirectionalLight(_) | ViewKind::Cascade(_) => Some(camera.view()),
-        ViewKind::PointLight(light, face) => lights.point(light).map(|lamp| cube::face_view(lamp.position, lamp.reach.planes, face)),
-        ViewKind::SpotLight(light) => lights.spot(light).map(|lamp| SpotView::of(&lamp).table),
-        ViewKind::RectangleLight(light, face) => {
-            rectangles::center(rectangles, light).map(|center| cube::face_view(center.position, center.planes, face))
-        }
+/// The table of a view that is no directional light's; zero where a light or probe is not there, since nothing is drawn then.
+pub(super) fn view_table(view: &ViewRequest, camera: &CameraView, lights: &Lights, center: impl Fn(Cube) -> Option<Center>) -> ViewTable {
+    let table = match (view.kind, Cube::of(view.kind)) {
+        (_, Some((cube, face))) => center(cube).map(|center| cube::face_view(center.position, center.planes, face)),
+        (ViewKind::SpotLight(light), _) => lights.spot(light).map(|lamp| SpotView::of(&lamp).table),
+        _ => Some(camera.view()),
     };
     table.unwrap_or_else(bytemuck::Zeroable::zeroed)
 }

@@ -8,8 +8,8 @@ use luminaire_graph::published::{
 };
 
 use super::layout::{
-    CameraTable, CascadeRow, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, PointRow, RectangleRow, SpotRow,
-    TEXTURES, ViewTable,
+    CameraTable, CascadeRow, DirectionalRow, EnvironmentTable, InstanceRow, LocalRow, MaterialRow, PointRow, ProbeRow, RectangleRow,
+    SpotRow, TEXTURES, ViewTable,
 };
 use crate::asset::Vertex;
 
@@ -25,8 +25,17 @@ pub const TEXTURE_NAMES: [&str; TEXTURES] = [
 ];
 
 /// Names of counts, in the order of [`super::counts`].
-pub const COUNT_NAMES: [&str; 8] =
-    ["directional_lights", "point_lights", "spot_lights", "local_lights", "rectangle_lights", "opaque", "masked", "blended"];
+pub const COUNT_NAMES: [&str; 9] = [
+    "directional_lights",
+    "point_lights",
+    "spot_lights",
+    "local_lights",
+    "rectangle_lights",
+    "reflection_probes",
+    "opaque",
+    "masked",
+    "blended",
+];
 
 /// The image of the sky.
 pub(super) const SKY_IMAGE: &str = "sky_image";
@@ -71,7 +80,7 @@ pub fn schema() -> PublishedSchema {
     add(
         "view",
         TableKind::View,
-        "Where the pass draws from; shadow views have depth 0 near and 1 far.",
+        "Where the pass draws from; all views but the camera's have depth 0 near and 1 far.",
         size_of::<ViewTable>(),
         members!(ViewTable { projection_from_world: "mat4x4<f32>", position: "vec3<f32>", near: "f32", forward: "vec3<f32>", far: "f32" }),
     );
@@ -111,6 +120,13 @@ pub fn schema() -> PublishedSchema {
         "cascades",
         TableKind::Storage,
         "Shadow views of directional lights, each fitted to a part of what the camera sees.",
+        size_of::<CascadeRow>(),
+        members!(CascadeRow { shadow_from_world: "mat4x4<f32>", texel_size: "f32", depth_range: "f32", end: "f32", fade_end: "f32" }),
+    );
+    add(
+        "whole_scenes",
+        TableKind::Storage,
+        "Shadow views of directional lights over all of the scene, one for each light.",
         size_of::<CascadeRow>(),
         members!(CascadeRow { shadow_from_world: "mat4x4<f32>", texel_size: "f32", depth_range: "f32", end: "f32", fade_end: "f32" }),
     );
@@ -162,6 +178,13 @@ pub fn schema() -> PublishedSchema {
         }),
     );
     add(
+        "reflection_probes",
+        TableKind::Storage,
+        "Places from which the scene is captured, each with a box.",
+        size_of::<ProbeRow>(),
+        members!(ProbeRow { position: "vec3<f32>", near: "f32", box_from_world: "mat4x4<f32>", far: "f32" }),
+    );
+    add(
         "instances",
         TableKind::Storage,
         "Objects, by their stable slot; slots that nobody holds are zero.",
@@ -204,7 +227,7 @@ pub fn schema() -> PublishedSchema {
         material_samplers: TEXTURE_NAMES.map(|name| name.replace("_texture", "_sampler")).to_vec(),
         vertex: vertex_schema(),
         counts: COUNT_NAMES.map(str::to_owned).to_vec(),
-        collections: ["directional_lights", "point_lights", "spot_lights", "local_lights", "rectangle_lights"]
+        collections: ["directional_lights", "point_lights", "spot_lights", "local_lights", "rectangle_lights", "reflection_probes"]
             .map(|table| (table.to_owned(), Collection { table: table.to_owned(), element: table.trim_end_matches('s').to_owned() }))
             .into_iter()
             .collect(),
@@ -269,10 +292,12 @@ mod tests {
             ("environment", 48),
             ("directional_lights", 112),
             ("cascades", 80),
+            ("whole_scenes", 80),
             ("local_lights", 64),
             ("point_lights", 32),
             ("spot_lights", 80),
             ("rectangle_lights", 80),
+            ("reflection_probes", 96),
             ("instances", 128),
             ("instance_slots", 4),
             ("materials", 304),

@@ -36,29 +36,26 @@ pub(super) struct SunView {
 pub(super) fn fit(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, texels: [u32; 2]) -> SunView {
     let seen = bounds.and_then(|bounds| cascades::seen(camera, bounds));
     // Rounding moves the middle by up to half a texel.
-    fit_part(to_light, camera, bounds, seen, texels, 1.0, true)
+    fit_part(to_light, bounds, seen.map(|seen| frustum_sphere(camera, seen)), texels, 1.0, true)
+}
+
+/// Fits a map of so many texels to all of the scene, whatever the camera sees.
+pub(super) fn fit_whole(to_light: DVec3, bounds: Option<Aabb>, texels: [u32; 2]) -> SunView {
+    fit_part(to_light, bounds, None, texels, 1.0, false)
 }
 
 /// Fits a map of so many texels to a part of what the camera sees.
 pub(super) fn fit_cascade(to_light: DVec3, camera: &CameraView, bounds: Option<Aabb>, cascade: CascadeView, texels: [u32; 2]) -> SunView {
     let part = bounds.and_then(|bounds| cascades::part(camera, bounds, cascade));
-    fit_part(to_light, camera, bounds, part, texels, CASCADE_MARGIN, cascade.split.snap)
+    fit_part(to_light, bounds, part.map(|part| frustum_sphere(camera, part)), texels, CASCADE_MARGIN, cascade.split.snap)
 }
 
-/// Without a part, or where that is larger, all of the scene is in the map. `margin` is in texels.
-fn fit_part(
-    to_light: DVec3,
-    camera: &CameraView,
-    bounds: Option<Aabb>,
-    part: Option<Depths>,
-    texels: [u32; 2],
-    margin: f64,
-    snap: bool,
-) -> SunView {
+/// Fits a map to a sphere. Without one, or where that is larger, all of the scene is in the map. `margin` is in texels.
+fn fit_part(to_light: DVec3, bounds: Option<Aabb>, part: Option<(DVec3, f64)>, texels: [u32; 2], margin: f64, snap: bool) -> SunView {
     let (right, up, back) = look_at(-to_light);
     let scene = LightBounds::of(bounds, right, up, back);
     let (mut middle, mut half) = (scene.middle, scene.half);
-    if let Some((center, radius)) = part.map(|part| frustum_sphere(camera, part)) {
+    if let Some((center, radius)) = part {
         let radius = round_up(radius);
         if radius < half {
             (middle, half) = ([center.dot(right), center.dot(up)], radius);

@@ -11,11 +11,15 @@ use crate::asset::{AlphaMode, Material, Projection};
 use crate::primitive::{cuboid, sphere};
 use crate::world::{
     Camera, ChildOf, Cone, DirectionalLight, Exposure, Hidden, LocalLight, Materials, MeshInstance, Meshes, Name, RectangleLight,
-    Transform, new_world, set_translation,
+    ReflectionProbe, Transform, new_world, set_translation,
 };
+
+mod captures;
 
 const CAMERA_VIEW: ViewRequest = ViewRequest { kind: ViewKind::Camera, width: 64, height: 48 };
 const SUN_VIEW: ViewRequest = ViewRequest { kind: ViewKind::DirectionalLight(0), width: 512, height: 512 };
+
+const PROBE_VIEW: ViewRequest = ViewRequest { kind: ViewKind::ReflectionProbe(0, 4), width: 16, height: 16 };
 
 fn request<'a>(views: &'a [ViewRequest], draw_lists: &'a [(DrawFilter, ViewKind)]) -> PublishRequest<'a> {
     PublishRequest { camera: None, extent: [64, 48], views, draw_lists, max_texture_2d: 8192 }
@@ -50,6 +54,10 @@ fn place(world: &mut World, mesh: usize, material: usize, at: Vec3, scale: Vec3)
 fn panel(at: Vec3) -> (Transform, RectangleLight) {
     let light = RectangleLight { color: Vec3::ONE, luminance: 5.0, size: Vec2::new(2.0, 1.0), two_sided: false };
     (Transform(Affine3A::from_rotation_translation(Quat::from_rotation_x(-std::f32::consts::FRAC_PI_2), at)), light)
+}
+
+fn probe(place: Affine3A) -> (Transform, ReflectionProbe) {
+    (Transform(place), ReflectionProbe { size: Vec3::new(4.0, 2.0, 4.0), near: 0.1, far: 8.0 })
 }
 
 /// What somebody publishes who has published nothing before.
@@ -213,11 +221,12 @@ fn degenerate_worlds_publish_finite_numbers() {
         Affine3A::from_scale(Vec3::splat(f32::NAN)),
         Affine3A::from_translation(Vec3::splat(f32::INFINITY)),
     ];
-    let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::PointLight(1, 5), width: 8, height: 8 }];
+    let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::PointLight(1, 5), width: 8, height: 8 }, PROBE_VIEW];
     for transform in transforms {
         let mut world = stage();
         let lamp = LocalLight { color: Vec3::ONE, intensity: f32::INFINITY, range: Some(f32::NAN), cone: None };
         world.spawn((Transform(transform), lamp));
+        world.spawn(probe(transform));
         world.spawn((Transform(transform), MeshInstance { mesh: 0, material: 3 }));
         let published = publish(&mut world, &request(&views, &[(DrawFilter::All, ViewKind::PointLight(1, 0))])).unwrap();
         for (name, table) in published.scene.tables.iter().filter(|(name, _)| *name != "instance_slots") {
@@ -303,17 +312,27 @@ fn faces_of_a_rectangle_see_what_any_point_of_it_sees() {
 
 #[test]
 fn what_is_not_there_is_reported_at_once() {
-    let missing =
-        [ViewKind::DirectionalLight(3), ViewKind::PointLight(0, 6), ViewKind::RectangleLight(0, 6), ViewKind::RectangleLight(1, 0)];
+    let missing = [
+        ViewKind::DirectionalLight(3),
+        ViewKind::PointLight(0, 6),
+        ViewKind::RectangleLight(0, 6),
+        ViewKind::RectangleLight(1, 0),
+        ViewKind::WholeScene(1),
+        ViewKind::ReflectionProbe(0, 6),
+        ViewKind::ReflectionProbe(1, 0),
+    ];
     let views = missing.map(|kind| ViewRequest { kind, ..SUN_VIEW });
     let wanted = PublishRequest { camera: Some("mian"), ..request(&views, &[(DrawFilter::All, ViewKind::PointLight(9, 0))]) };
     let mut world = stage();
     world.spawn(panel(Vec3::Y));
+    world.spawn(probe(Affine3A::IDENTITY));
     let problems = publish(&mut world, &wanted).unwrap_err();
     let codes: Vec<&str> = problems.iter().map(|problem| problem.code).collect();
-    let [light, face] = ["publish::unknown-light", "publish::unknown-face"];
-    assert_eq!(codes, [light, face, light, face, light, "world::unknown-camera"]);
-    assert_eq!(problems[5].hint.as_deref(), Some("did you mean `main`?"));
+    let [light, face, probe] = ["publish::unknown-light", "publish::unknown-face", "publish::unknown-probe"];
+    assert_eq!(codes, [light, face, light, face, light, light, face, probe, "world::unknown-camera"]);
+    assert_eq!(problems[6].message, "a view asks for face 6 of reflection probe 0; a cube has the faces 0 to 5");
+    assert_eq!(problems[7].message, "a view asks for reflection probe 1, and the scene has 1");
+    assert_eq!(problems[8].hint.as_deref(), Some("did you mean `main`?"));
 }
 
 #[test]
@@ -321,7 +340,7 @@ fn counts_are_rows_of_lights_and_instances_of_surfaces() {
     let mut world = crowd();
     publish(&mut world, &request(&[], &[])).unwrap();
     let counts: Vec<(String, u32)> = counts(&world).into_iter().collect();
-    let expected = [1, 1, 0, 1, 0, 5, 1, 4];
+    let expected = [1, 1, 0, 1, 0, 0, 5, 1, 4];
     assert_eq!(counts, COUNT_NAMES.iter().zip(expected).map(|(name, count)| ((*name).to_owned(), count)).collect::<Vec<_>>());
 }
 
@@ -413,6 +432,7 @@ mod memory {
             }
             (13, _) => turn::<Camera>(world, at),
             (14, _) => turn::<DirectionalLight>(world, at),
+            (16, _) => turn::<ReflectionProbe>(world, at),
             (9, _) => world.resource_mut::<Meshes>().0.push(cuboid("more", at.abs() + 0.1, 0)),
             (10, _) => {
                 let lamp = LocalLight { color: Vec3::ONE, intensity: at.x.abs() * 0.01, range: (at.y > 0.0).then_some(at.y), cone: None };
@@ -427,7 +447,7 @@ mod memory {
         #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
 
         #[test]
-        fn leaves_no_trace(steps in prop::collection::vec(prop::collection::vec((0_u8..18, 0_usize..40, prop::array::uniform3(-6.0_f32..6.0)), 0..6), 1..14)) {
+        fn leaves_no_trace(steps in prop::collection::vec(prop::collection::vec((0_u8..19, 0_usize..40, prop::array::uniform3(-6.0_f32..6.0)), 0..6), 1..14)) {
             let mut world = crowd();
             let downwards = spot(Vec3::new(0.0, 4.0, 0.0));
             let lit = world.spawn(downwards).id();
@@ -435,14 +455,16 @@ mod memory {
             let cascades = [0, 1].map(|index| ViewKind::Cascade(CascadeView { light: 0, index, split }));
             let lamp = |face| ViewKind::PointLight(0, face);
             world.spawn(panel(Vec3::new(1.0, 3.0, 1.0)));
+            world.spawn(probe(Affine3A::from_translation(Vec3::Y)));
             let mut lists: Vec<(DrawFilter, ViewKind)> = (0..6).map(|face| (DrawFilter::Opaque, lamp(face))).collect();
             lists.extend((0..6).map(|face| (DrawFilter::Masked, lamp(face))));
             lists.extend((0..6).map(|face| (DrawFilter::Opaque, ViewKind::RectangleLight(0, face))));
+            lists.extend((0..6).map(|face| (DrawFilter::All, ViewKind::ReflectionProbe(0, face))));
             let views = [(DrawFilter::Solid, ViewKind::Camera), (DrawFilter::Opaque, ViewKind::DirectionalLight(0)), (DrawFilter::Blended, ViewKind::Camera), (DrawFilter::All, lamp(2))];
             lists.extend(views);
-            lists.extend([ViewKind::SpotLight(0), cascades[0], cascades[1]].map(|view| (DrawFilter::Opaque, view)));
+            lists.extend([ViewKind::SpotLight(0), ViewKind::WholeScene(0), cascades[0], cascades[1]].map(|view| (DrawFilter::Opaque, view)));
             let maps = cascades.map(|kind| ViewRequest { kind, ..SUN_VIEW });
-            let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::SpotLight(0), ..SUN_VIEW }, ViewRequest { kind: ViewKind::RectangleLight(0, 3), ..SUN_VIEW }, maps[0], maps[1]];
+            let views = [CAMERA_VIEW, SUN_VIEW, ViewRequest { kind: ViewKind::SpotLight(0), ..SUN_VIEW }, ViewRequest { kind: ViewKind::RectangleLight(0, 3), ..SUN_VIEW }, PROBE_VIEW, ViewRequest { kind: ViewKind::WholeScene(0), ..SUN_VIEW }, maps[0], maps[1]];
             let wanted = request(&views, &lists);
             let (mut publisher, mut things) = (Publisher::default(), Vec::new());
             for changes in steps {

@@ -162,6 +162,11 @@ pub struct DirectionalSlot(pub u32);
 #[component(on_insert = take::<RectangleSlot>, on_discard = give_back::<RectangleSlot>)]
 pub struct RectangleSlot(pub u32);
 
+/// Row of a [`ReflectionProbe`] in the table `reflection_probes`.
+#[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+#[component(on_insert = take::<ProbeSlot>, on_discard = give_back::<ProbeSlot>)]
+pub struct ProbeSlot(pub u32);
+
 /// Row of a [`LocalLight`] in the table `local_lights`.
 #[derive(Component, Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 #[component(on_insert = take::<LocalSlot>, on_discard = give_back::<LocalSlot>)]

@@ -37,7 +37,7 @@ pub use camera_path::{CameraPath, Facing, PathInterpolation, PathKey};
 pub use clock::{Time, set_time};
 pub use components::{
     Camera, CameraSlot, Cone, DirectionalLight, DirectionalSlot, Exposure, GlobalTransform, LocalLight, LocalSlot, MeshInstance,
-    ObjectSlot, PointSlot, ProbeVolume, RectangleLight, RectangleSlot, ReflectionProbe, SpotSlot, Transform, Volume,
+    ObjectSlot, PointSlot, ProbeSlot, ProbeVolume, RectangleLight, RectangleSlot, ReflectionProbe, SpotSlot, Transform, Volume,
 };
 pub use control::{Axis, Command, Fly, Orbit, control};
 pub use edit::{find_by_name, set_translation};

@@ -11,8 +11,8 @@ use bevy_ecs::prelude::{Component, Entity, Has, Resource, With, Without, World};
 use bevy_ecs::world::DeferredWorld;
 
 use super::components::{
-    Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot, PointSlot, RectangleLight,
-    RectangleSlot, SpotSlot,
+    Camera, CameraSlot, DirectionalLight, DirectionalSlot, LocalLight, LocalSlot, MeshInstance, ObjectSlot, PointSlot, ProbeSlot,
+    RectangleLight, RectangleSlot, ReflectionProbe, SpotSlot,
 };
 
 /// A component that holds a slot.
@@ -34,7 +34,7 @@ macro_rules! slot {
         }
     )*};
 }
-slot!(ObjectSlot, DirectionalSlot, LocalSlot, PointSlot, SpotSlot, RectangleSlot, CameraSlot);
+slot!(ObjectSlot, DirectionalSlot, LocalSlot, PointSlot, SpotSlot, RectangleSlot, ProbeSlot, CameraSlot);
 
 /// Which slots nobody holds.
 #[derive(Resource)]
@@ -85,13 +85,14 @@ pub(super) fn give_back<Of: Slot>(mut world: DeferredWorld<'_>, context: HookCon
     }
 }
 
-/// Gives a slot to every mesh instance, light and camera that has none.
+/// Gives a slot to every mesh instance, light, reflection probe and camera that has none.
 pub fn assign_slots(world: &mut World) {
     assign::<MeshInstance, ObjectSlot>(world);
     assign::<DirectionalLight, DirectionalSlot>(world);
     assign::<LocalLight, LocalSlot>(world);
     assign_by_shadow(world);
     assign::<RectangleLight, RectangleSlot>(world);
+    assign::<ReflectionProbe, ProbeSlot>(world);
     assign::<Camera, CameraSlot>(world);
 }
 

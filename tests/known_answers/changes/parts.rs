@@ -82,5 +82,7 @@ fn view_name(view: ViewKind) -> String {
         ViewKind::PointLight(light, face) => format!("lamp {light} face {face}"),
         ViewKind::SpotLight(light) => format!("spot {light}"),
         ViewKind::RectangleLight(light, face) => format!("rectangle {light} face {face}"),
+        ViewKind::WholeScene(light) => format!("sun {light} whole scene"),
+        ViewKind::ReflectionProbe(probe, face) => format!("probe {probe} face {face}"),
     }
 }

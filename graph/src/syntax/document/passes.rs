@@ -52,6 +52,10 @@ pub enum ViewDoc {
     SpotLight(Expr),
     /// One cube face of a rectangle of light, from its middle: its index among them, and the face.
     RectangleLight(Expr, Expr),
+    /// The orthographic shadow view of a directional light over all of the scene, by its index among them.
+    WholeScene(Expr),
+    /// One cube face of a reflection probe: its index among them, and the face.
+    ReflectionProbe(Expr, Expr),
 }
 
 /// Depth test and write of a Draw or Fullscreen.

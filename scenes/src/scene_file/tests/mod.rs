@@ -43,9 +43,9 @@ fn shipped() -> Vec<(String, String)> {
 #[test]
 fn shipped_scenes_load() {
     let expected = [
-        ("cornell.ron", [0, 1, 0, 1, 0, 7, 0, 0]),
-        ("materials.ron", [1, 2, 0, 2, 0, 32, 0, 0]),
-        ("probe_grid.ron", [1, 1, 0, 1, 0, 4096, 0, 0]),
+        ("cornell.ron", [0, 1, 0, 1, 0, 0, 7, 0, 0]),
+        ("materials.ron", [1, 2, 0, 2, 0, 0, 32, 0, 0]),
+        ("probe_grid.ron", [1, 1, 0, 1, 0, 0, 4096, 0, 0]),
     ];
     let shipped = shipped();
     assert!(shipped.len() >= 10);
