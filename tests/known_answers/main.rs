@@ -18,6 +18,7 @@ mod many_lights;
 mod masks;
 mod materials;
 mod noon;
+mod occlusion;
 mod orientation;
 mod runs;
 mod shadow_kinds;
@@ -36,7 +37,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 19] = [
+    let groups: [&[Case]; 20] = [
         antialiasing::CASES,
         area::CASES,
         brdf::CASES,
@@ -47,6 +48,7 @@ fn main() {
         masks::CASES,
         materials::CASES,
         noon::CASES,
+        occlusion::CASES,
         orientation::CASES,
         runs::CASES,
         shadow_kinds::CASES,
