@@ -22,6 +22,9 @@ var<uniform> params: Params;
 
 // The part of the radius in which occluders fade.
 const FADE: f32 = 0.6;
+// Radians. What rises less is taken for the surface itself: normals are off by so much where triangles are large, and by more where they are
+// seen edge on.
+const LEAST_RISE: f32 = 0.005;
 
 struct Targets {
     // Sums over slices, as SliceLight has them.
@@ -55,6 +58,7 @@ fn risen(surface: Surface, slice: Slice, side: f32, start: f32) -> f32 {
         return 0.0;
     }
     let outwards = side * tangent_of(slice);
+    let least_rise = LEAST_RISE / max(dot(surface.geometric_normal, surface.to_eye), LEAST_RISE);
     // Of the highest occluder so far: the cosine of the angle from the plane, negative, so that it grows.
     var highest = -1.0;
     for (var i = 0u; i < params.steps; i++) {
@@ -66,7 +70,8 @@ fn risen(surface: Surface, slice: Slice, side: f32, start: f32) -> f32 {
         }
         let to_occluder = position_at(texel, stored_depth) - surface.position;
         // Seen within the slice, but above the plane as it is: of a plane nothing is, though pixels lie beside the line.
-        let above = dot(to_occluder, surface.geometric_normal) / slice.plane_length;
+        let over_plane = dot(to_occluder, surface.geometric_normal) - least_rise * length(to_occluder);
+        let above = over_plane / slice.plane_length;
         let beside = dot(to_occluder, outwards);
         if above > 0.0 {
             let towards_eye = max(dot(to_occluder, surface.to_eye), 0.0);

@@ -30,5 +30,5 @@ fn shot(edge: u32, outputs: &[&str]) -> Shot {
 
 /// With so many slices and steps that few errors are left but those of the method, and without an end of what counts.
 fn fine(edge: u32, outputs: &[&str]) -> Shot {
-    shot(edge, outputs).set("occlusion.radius", "1000.0").set("occlusion.slices", 16).set("occlusion.steps", 32).set("occlusion.blur", false)
+    shot(edge, outputs).set("occlusion.radius", "1000.0").set("occlusion.slices", 8).set("occlusion.steps", 64).set("occlusion.blur", false)
 }

@@ -8,7 +8,7 @@ use crate::support::picture::{Eye, Series, Shot, places, texel};
 
 /// A few meshes whose own normals differ from their triangles', and a floor that is seen at all angles up to the horizon.
 const CONVEX: [(&str, &str); 3] = [
-    ("floor", "\"floor\": (shape: Plane(size: (2000, 2000)), surface: ())"),
+    ("floor", "\"floor\": (shape: Plane(size: (400, 400)), surface: ())"),
     ("ball", "\"ball\": (shape: Sphere(radius: 0.9, sectors: 24, stacks: 12), translation: (0, 1, 0), surface: ())"),
     ("box", "\"box\": (shape: Box(size: (1, 1.4, 0.8)), rotation: (10, 25, 5), translation: (0, 1, 0), surface: ())"),
 ];
@@ -26,7 +26,7 @@ fn coarse() -> Shot {
     shot(96, &["occlusion"]).set("occlusion.slices", 1).set("occlusion.steps", 4).set("occlusion.blur", false)
 }
 
-/// Bent normals are those of the surface. Measured: visibility 1 exactly, also with a radius beyond all that is seen; half floats.
+/// Bent normals are those of the surface. Measured: visibility 1 exactly, also with a radius beyond all that is seen.
 pub fn convex() -> Result<(), Failed> {
     let mut series = Series::default();
     let shots = ["0.5", "1000.0"].map(|radius| coarse().set("occlusion.radius", radius));
@@ -67,7 +67,7 @@ pub fn beyond_the_radius() -> Result<(), Failed> {
         let visibility = texel(&image, place.0, place.1)[3];
         let beyond = point.z > radius;
         counts[usize::from(beyond)] += 1;
-        if (beyond && visibility < 0.999) || (point.z < 0.25 && visibility > 0.9) {
+        if (beyond && visibility < 0.999) || (point.z < 0.2 && visibility > 0.9) {
             return Err(format!("{visibility} at {point}").into());
         }
     }
@@ -99,6 +99,7 @@ fn difference(a: &LinearImage, b: &LinearImage, mirrored: bool) -> (f64, f64) {
     ((all.iter().map(|off| off * off).sum::<f64>() / all.len() as f64).sqrt(), all.iter().copied().fold(0.0, f64::max))
 }
 
+/// Measured: 0.0020 and at most 0.036, since the pattern of slices is not mirrored; 0.15 between pictures that are not turned over.
 pub fn mirrored() -> Result<(), Failed> {
     let mut series = Series::default();
     let shot = fine(128, &["occlusion"]).set("occlusion.blur", true).set("occlusion.radius", "1.0");
@@ -106,7 +107,7 @@ pub fn mirrored() -> Result<(), Failed> {
     let (off, worst) = difference(&right, &left, true);
     let (other, _) = difference(&right, &left, false);
     println!("{off:.4} and at most {worst:.3} between mirrored pictures, {other:.3} between the pictures");
-    Ok(())
+    if off < 0.004 && worst < 0.06 && other > 0.1 { Ok(()) } else { Err(format!("{off}, {worst}, {other}").into()) }
 }
 
 /// One slice of four steps, and the mean of many samples of it.
@@ -115,7 +116,7 @@ pub fn samples_converge() -> Result<(), Failed> {
     let scene = still_life(1.0);
     let once = shot(96, &["visibility"]).set("occlusion.slices", 1).set("occlusion.steps", 4).set("occlusion.blur", false);
     let (first, last) = (series.one(&once, &scene)?, series.one(&once.clone().set("samples", 64), &scene)?);
-    let many = once.set("occlusion.slices", 32).set("occlusion.steps", 32).set("samples", 4);
+    let many = once.set("occlusion.slices", 32).set("samples", 16);
     let truth = series.one(&many, &scene)?;
     let red = |image: &LinearImage| -> LinearImage {
         let texels = image.texels.iter().map(|texel| [0.0, 0.0, 0.0, texel[0]]).collect();
@@ -124,5 +125,5 @@ pub fn samples_converge() -> Result<(), Failed> {
     let (before, _) = difference(&red(&first), &red(&truth), false);
     let (after, _) = difference(&red(&last), &red(&truth), false);
     println!("off by {before:.4} with one sample, by {after:.4} with 64");
-    Ok(())
+    if before > 0.05 && after < 0.3 * before { Ok(()) } else { Err(format!("off by {before}, then by {after}").into()) }
 }

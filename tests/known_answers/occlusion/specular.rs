@@ -47,18 +47,24 @@ fn in_common(first: f64, second: f64, between: f64) -> f64 {
     (1.0 - first.cos()) * inside.count() as f64 / f64::from(rings * sectors)
 }
 
-/// The curve stands for an expression with five arcs.
+/// Exact where one cone holds the other or they are apart; between, the curve stands for an expression with five arcs. Measured: 0.0000 and
+/// 0.16 of the narrower cone.
 pub fn cones() -> Result<(), Failed> {
     let image = Shot::of(PIPELINE, [8, 8], &["cones"]).one(NO_SCENE)?;
-    let mut worst = 0.0f64;
+    let mut worst = [0.0f64; 2];
     for (x, y) in places(&image) {
         let [first, second] = [x, y].map(|place| 0.1 * f64::from(place + 1));
         for (found, part) in texel(&image, x, y).into_iter().zip([0.3, 0.6, 0.9, 1.2]) {
-            let narrow = 1.0 - first.min(second).cos();
-            let off = (found - in_common(first, second, part * (first + second))) / narrow;
-            worst = if off.abs() > worst.abs() { off } else { worst };
+            let between = part * (first + second);
+            // Visibility goes up to a hemisphere, and cones of reflections are narrower.
+            if first > 0.5 * PI || second > 0.5 * PI || first + second + between > 2.0 * PI || between > PI {
+                continue;
+            }
+            let off = (found - in_common(first.min(second), first.max(second), between)).abs() / (1.0 - first.min(second).cos());
+            let crosses = between > (first - second).abs() && between < first + second;
+            worst[usize::from(crosses)] = worst[usize::from(crosses)].max(off);
         }
     }
-    println!("off by {worst:.4} of the narrower cone");
-    Ok(())
+    println!("off by {worst:.4?} of the narrower cone");
+    if worst[0] < 0.005 && worst[1] < 0.2 { Ok(()) } else { Err(format!("off by {worst:?} of the narrower cone").into()) }
 }
