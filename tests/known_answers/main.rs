@@ -20,6 +20,7 @@ mod many_lights;
 mod masks;
 mod materials;
 mod noon;
+mod occlusion;
 mod orientation;
 mod reflection_probes;
 mod runs;
@@ -51,6 +52,7 @@ fn main() {
         masks::CASES,
         materials::CASES,
         noon::CASES,
+        occlusion::CASES,
         orientation::CASES,
         reflection_probes::CASES,
         runs::CASES,

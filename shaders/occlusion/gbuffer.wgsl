@@ -1,0 +1,25 @@
+// As much of the G-buffer as occlusion reads: depth and normals (shared/gbuffer.wgsl).
+
+#import "shared/forward_surface.wgsl"
+#import "shared/gbuffer.wgsl"
+#import "shared/jitter.wgsl"
+
+struct Targets {
+    normals: vec2<u32>,
+}
+
+@vertex
+fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
+    var fragment = transform_mesh_vertex(vertex, instance_index);
+    fragment.clip_position = jittered(fragment.clip_position);
+    return fragment;
+}
+
+@fragment
+fn store(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> Targets {
+    let drawn = drawn_surface(fragment, front_facing);
+    if is_cut_out(fragment.material, drawn.alpha) {
+        discard;
+    }
+    return Targets(encode_gbuffer(drawn.point).normals);
+}
