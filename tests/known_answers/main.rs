@@ -40,7 +40,7 @@ type Case = (&'static str, fn() -> Result<(), Failed>);
 fn main() {
     let arguments = Arguments::from_args();
     let missing = if support::picture::adapter().is_some() { None } else { Some("a Vulkan adapter") };
-    let groups: [&[Case]; 20] = [
+    let groups: [&[Case]; 22] = [
         antialiasing::CASES,
         area::CASES,
         brdf::CASES,
