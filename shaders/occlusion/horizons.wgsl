@@ -22,9 +22,13 @@ var<uniform> params: Params;
 
 // The part of the radius in which occluders fade.
 const FADE: f32 = 0.6;
-// Radians. What rises less is taken for the surface itself: normals are off by so much where triangles are large, and by more where they are
-// seen edge on.
+// What rises less than this angle, radians, is taken for the surface itself: the normals of large triangles are off by so much.
 const LEAST_RISE: f32 = 0.005;
+// The same, times the square of the cosine to the eye: what is seen edge on bends within a pixel. Without it single pixels on the outlines of
+// round things are black.
+const EDGE_ON_RISE: f32 = 0.0006;
+// Of that cosine: below, nothing counts.
+const LEAST_COSINE: f32 = 0.01;
 
 struct Targets {
     // Sums over slices, as SliceLight has them.
@@ -58,7 +62,7 @@ fn risen(surface: Surface, slice: Slice, side: f32, start: f32) -> f32 {
         return 0.0;
     }
     let outwards = side * tangent_of(slice);
-    let least_rise = LEAST_RISE / max(dot(surface.geometric_normal, surface.to_eye), LEAST_RISE);
+    let edge_on = EDGE_ON_RISE / square(max(dot(surface.geometric_normal, surface.to_eye), LEAST_COSINE));
     // Of the highest occluder so far: the cosine of the angle from the plane, negative, so that it grows.
     var highest = -1.0;
     for (var i = 0u; i < params.steps; i++) {
@@ -70,7 +74,7 @@ fn risen(surface: Surface, slice: Slice, side: f32, start: f32) -> f32 {
         }
         let to_occluder = position_at(texel, stored_depth) - surface.position;
         // Seen within the slice, but above the plane as it is: of a plane nothing is, though pixels lie beside the line.
-        let over_plane = dot(to_occluder, surface.geometric_normal) - least_rise * length(to_occluder);
+        let over_plane = dot(to_occluder, surface.geometric_normal) - (LEAST_RISE + edge_on) * length(to_occluder);
         let above = over_plane / slice.plane_length;
         let beside = dot(to_occluder, outwards);
         if above > 0.0 {
