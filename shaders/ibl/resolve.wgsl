@@ -68,8 +68,9 @@ fn sh_of_probe(probe: u32) -> array<vec3<f32>, 9> {
     return found;
 }
 
-// Earlier probes come before later ones, and what none of them holds is the sky's.
-fn around(point: SurfacePoint, normal: vec3<f32>, mirrored: vec3<f32>) -> Surroundings {
+// Earlier probes come before later ones, and what none of them holds is the sky's, of which `seen` reaches the lobe. What stands nearby is in
+// the probes' cubes, and hides nothing of them.
+fn around(point: SurfacePoint, normal: vec3<f32>, mirrored: vec3<f32>, seen: f32) -> Surroundings {
     var sum = Surroundings(vec3<f32>(0.0), vec3<f32>(0.0));
     var left = 1.0;
     for (var i = 0u; i < probes; i++) {
@@ -85,7 +86,7 @@ fn around(point: SurfacePoint, normal: vec3<f32>, mirrored: vec3<f32>) -> Surrou
     if left > 0.0 {
         let sky = sky_around(normal, mirrored, point.roughness);
         sum.irradiance += left * sky.irradiance;
-        sum.lobe += left * sky.lobe;
+        sum.lobe += left * seen * sky.lobe;
     }
     return sum;
 }
@@ -105,9 +106,9 @@ fn resolve(@builtin(position) place: vec4<f32>, @location(0) uv: vec2<f32>) -> T
     let open_side = select(hidden.xyz, point.normal, all(hidden.xyz == vec3<f32>(0.0)));
     let n_dot_v = saturate(dot(point.normal, point.to_eye));
     let mirrored = reflect(-point.to_eye, point.normal);
-    let light = around(point, open_side, mirrored);
+    let seen = specular_occlusion(hidden.w, hidden.xyz, mirrored, point.roughness, n_dot_v);
+    let light = around(point, open_side, mirrored, seen);
     let reflectance = split_sum(point, n_dot_v);
     let diffuse = reflectance.diffuse * light.irradiance * multi_bounce(hidden.w, reflectance.diffuse);
-    let seen = specular_occlusion(hidden.w, hidden.xyz, mirrored, point.roughness, n_dot_v);
-    return Targets(vec4<f32>(fit_half(diffuse + reflectance.specular * light.lobe * seen), 0.0));
+    return Targets(vec4<f32>(fit_half(diffuse + reflectance.specular * light.lobe), 0.0));
 }

@@ -27,8 +27,8 @@ var source: texture_2d_array<f32>;
 override edge: u32 = 1;
 override steps: u32 = 2;
 
-// The chord over which wide lobes change, through the cosine alone.
-const LONGEST_CORE: f32 = 0.5;
+// The chord over which the cosine changes much, wherever the lobe is flat.
+const LONGEST_CHORD: f32 = 0.6;
 
 struct Targets {
     // In units of the source.
@@ -59,10 +59,10 @@ fn lobe_mean(cube: u32, normal: vec3<f32>, alpha: f32) -> vec3<f32> {
     for (var face = 0u; face < 6u; face++) {
         everything += largest(textureLoad(source, vec2<u32>(0u), 6u * cube + face, coarsest).rgb);
     }
-    // The weights of a narrow lobe add up to 4 pi.
-    let most_in_doubt = params.doubt * 4.0 * PI * everything / 6.0;
+    // The weights add up to 4 pi for a narrow lobe and to pi for the widest, which is the cosine.
+    let most_in_doubt = params.doubt * 4.0 * PI / (1.0 + 3.0 * square(alpha)) * everything / 6.0;
     // The chord over which the lobe keeps most of its height, squared.
-    let core = square(min(2.0 * alpha, LONGEST_CORE));
+    let core = square(2.0 * alpha);
     var level = coarsest;
     // The cell: its face, and below that two bits for each level.
     var cell = 0u;
@@ -84,7 +84,7 @@ fn lobe_mean(cube: u32, normal: vec3<f32>, alpha: f32) -> vec3<f32> {
         // Half a diagonal below the horizon there is nothing of it above.
         if n_dot_l > -0.70710678 * size {
             // By the chord from the axis to its middle.
-            let relative_size = size / sqrt(core + 2.0 - 2.0 * n_dot_l);
+            let relative_size = size / min(sqrt(core + 2.0 - 2.0 * n_dot_l), LONGEST_CHORD);
             let covered = lobe(alpha, n_dot_l) * max(n_dot_l, 0.0) * square(size) * along;
             let light = covered * textureLoad(source, texel, 6u * cube + face, level).rgb;
             if level > 0u && (relative_size > params.cell_size || largest(light) * relative_size > most_in_doubt) {

@@ -1,8 +1,9 @@
-//! Direct light against path-traced references, whose pixels are means over their area.
+//! Pictures against path-traced references, whose pixels are means over their area: direct light here, that of the sky in `image_based`.
 
 #![allow(clippy::print_stdout, reason = "the figures are worth seeing")]
 
-#[path = "support/mod.rs"]
+mod image_based;
+#[path = "../support/mod.rs"]
 mod support;
 
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -171,5 +172,6 @@ fn main() {
     let mut trials: Vec<Trial> =
         CASES.iter().map(|case| trial(&format!("{}, {}", case.reference, case.area_lights), missing, || agrees(case))).collect();
     trials.push(trial("leak_sealed is black behind the wall", missing, sealed_room_is_black));
+    trials.extend(image_based::CASES.iter().map(|(name, run)| trial(name, missing, run)));
     libtest_mimic::run(&arguments, trials).exit();
 }
