@@ -22,6 +22,8 @@ pub const CASES: &[Case] = &[
     ("environment::a change runs what it reaches", changes),
 ];
 
+type Pictures = std::collections::BTreeMap<String, luminaire::image_file::LinearImage>;
+
 const PARTS: &str = "tests/fixtures/gpu/environment.ron";
 const IBL: &str = "pipelines/ibl.ron";
 const NO_SCENE: &str = "(cameras: { \"eye\": (position: (0, 0, 1), target: (0, 0, 0)) })";
@@ -110,7 +112,7 @@ fn height_integral(row: u32, height: u32) -> f64 {
 }
 
 /// The light of all directions, from the first coefficient.
-fn flux(images: &std::collections::BTreeMap<String, luminaire::image_file::LinearImage>) -> f64 {
+fn flux(images: &Pictures) -> f64 {
     texel(&images["coefficients"], 0, 0)[0] * (4.0 * PI).sqrt()
 }
 
@@ -197,11 +199,11 @@ fn spheres(base_color: [f64; 3]) -> (Eye, String) {
     (eye, format!("({ron} environment: (sky_radiance: (1, 1, 1)), objects: {{ {objects} }})"))
 }
 
-/// Every pixel of a sphere: which row and column, the cosine to the eye, and its light.
-fn of_spheres(
-    eye: &Eye,
-    images: &std::collections::BTreeMap<String, luminaire::image_file::LinearImage>,
-) -> Vec<(usize, usize, f64, [f64; 3])> {
+/// A pixel of a sphere: which row and column of spheres, the cosine to the eye, and its light.
+type Pixel = (usize, usize, f64, [f64; 3]);
+
+/// Every pixel of the spheres.
+fn of_spheres(eye: &Eye, images: &Pictures) -> Vec<Pixel> {
     let mut found = Vec::new();
     for (x, y) in places(&images["normal"]) {
         let [nx, ny, nz, there] = texel(&images["normal"], x, y);
@@ -217,7 +219,7 @@ fn of_spheres(
     found
 }
 
-fn furnace(base_color: [f64; 3]) -> Result<Vec<(usize, usize, f64, [f64; 3])>, Failed> {
+fn furnace(base_color: [f64; 3]) -> Result<Vec<Pixel>, Failed> {
     let (eye, scene) = spheres(base_color);
     let shot = Shot::of(IBL, [192, 192], &["indirect", "normal"]).set("environment_texels", 16).set("occlusion", "none");
     Ok(of_spheres(&eye, &shot.take(&scene)?))
