@@ -2,17 +2,10 @@
 
 #import "shared/forward_surface.wgsl"
 #import "shared/gbuffer.wgsl"
-#import "shared/jitter.wgsl"
+#import "shared/jittered_vertex.wgsl"
 
 struct Targets {
     normals: vec2<u32>,
-}
-
-@vertex
-fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
-    var fragment = transform_mesh_vertex(vertex, instance_index);
-    fragment.clip_position = jittered(fragment.clip_position);
-    return fragment;
 }
 
 @fragment

@@ -2,18 +2,11 @@
 
 #import "shared/direct_light.wgsl"
 #import "shared/forward_surface.wgsl"
-#import "shared/jitter.wgsl"
+#import "shared/jittered_vertex.wgsl"
 
 struct Targets {
     // Radiance / light_unit, and how much of what is behind is covered.
     light: vec4<f32>,
-}
-
-@vertex
-fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
-    var fragment = transform_mesh_vertex(vertex, instance_index);
-    fragment.clip_position = jittered(fragment.clip_position);
-    return fragment;
 }
 
 @fragment

@@ -2,14 +2,7 @@
 
 #import "shared/forward_surface.wgsl"
 #import "shared/gbuffer.wgsl"
-#import "shared/jitter.wgsl"
-
-@vertex
-fn transform(vertex: MeshVertex, @builtin(instance_index) instance_index: u32) -> MeshFragment {
-    var fragment = transform_mesh_vertex(vertex, instance_index);
-    fragment.clip_position = jittered(fragment.clip_position);
-    return fragment;
-}
+#import "shared/jittered_vertex.wgsl"
 
 @fragment
 fn store(fragment: MeshFragment, @builtin(front_facing) front_facing: bool) -> GbufferTexel {

@@ -27,25 +27,21 @@ fn equirectangular_place(direction: vec3<f32>, size: vec2<f32>) -> vec2<f32> {
     return vec2<f32>(around, down) * size;
 }
 
-fn equirectangular_texel(column: i32, row: i32) -> vec3<f32> {
+// The texel of an equirectangular image: columns go round, rows end at the poles.
+fn equirectangular_texel(at: vec2<i32>) -> vec2<i32> {
     let size = vec2<i32>(textureDimensions(sky_image));
-    // Columns go round, rows end at the poles.
-    let wrapped = ((column % size.x) + size.x) % size.x;
-    return textureLoad(sky_image, vec2<i32>(wrapped, clamp(row, 0, size.y - 1)), 0).rgb;
+    return vec2<i32>(((at.x % size.x) + size.x) % size.x, clamp(at.y, 0, size.y - 1));
 }
 
-// A texel of a face, or of its neighbour where the place lies beside the face.
-fn sky_face_texel(face: u32, column: i32, row: i32) -> vec3<f32> {
-    let edge = i32(textureDimensions(sky_image).x) / 2;
-    var there = face;
-    var place = vec2<i32>(column, row);
-    if any(place < vec2<i32>(0)) || any(place >= vec2<i32>(edge)) {
-        let direction = cube_direction(face, (vec2<f32>(place) + 0.5) * (2.0 / f32(edge)) - 1.0);
-        there = cube_face(direction);
-        let beside = into_cube_face(there, direction);
-        place = clamp(vec2<i32>(floor((beside.xy / beside.z * 0.5 + 0.5) * f32(edge))), vec2<i32>(0), vec2<i32>(edge - 1));
-    }
-    return textureLoad(sky_image, place + edge * vec2<i32>(i32(there % 2u), i32(there / 2u)), 0).rgb;
+// The texel of a face, or of its neighbour where the place lies beside the face. Without a branch: with one, Mesa 22.3's software driver
+// loses memory with each draw.
+fn sky_face_texel(face: u32, at: vec2<i32>) -> vec2<i32> {
+    let edge = max(i32(textureDimensions(sky_image).x) / 2, 1);
+    let direction = cube_direction(face, (vec2<f32>(at) + 0.5) * (2.0 / f32(edge)) - 1.0);
+    let there = cube_face(direction);
+    let on_face = into_cube_face(there, direction);
+    let place = vec2<i32>(floor((on_face.xy / on_face.z * 0.5 + 0.5) * f32(edge)));
+    return clamp(place, vec2<i32>(0), vec2<i32>(edge - 1)) + edge * vec2<i32>(i32(there % 2u), i32(there / 2u));
 }
 
 // The image in a direction of its own frame, nits before `sky_strength`: bilinear.
@@ -62,12 +58,8 @@ fn sky_image_radiance(direction: vec3<f32>) -> vec3<f32> {
         let offset = vec2<i32>(i & 1, i >> 1u);
         let at = corner + offset;
         let weights = select(1.0 - part, part, offset == vec2<i32>(1));
-        var found: vec3<f32>;
-        if has_faces {
-            found = sky_face_texel(face, at.x, at.y);
-        } else {
-            found = equirectangular_texel(at.x, at.y);
-        }
+        let texel = select(equirectangular_texel(at), sky_face_texel(face, at), has_faces);
+        let found = textureLoad(sky_image, texel, 0).rgb;
         sum += weights.x * weights.y * found;
     }
     return sum;
