@@ -8,7 +8,7 @@ use std::fmt::Write;
 
 use luminaire_graph::device::DeviceFacts;
 use luminaire_graph::diagnostic::render;
-use luminaire_graph::expand::types::{Expanded, Indices, PartRef, PassKind, Work};
+use luminaire_graph::expand::types::{Expanded, Indices, PartRef, PassKind, Shape, Work};
 use luminaire_graph::expand::{ExpandInput, expand};
 use luminaire_graph::load::load;
 use luminaire_graph::source::SourceMap;
@@ -47,7 +47,11 @@ fn describe(expanded: &Expanded) -> String {
         line(format!("param {} = {}{}", param.name, param.value, if param.live { " live" } else { "" }));
     }
     for resource in &expanded.resources {
-        line(format!("resource {} {:?} {:?}", resource.name, resource.keep, resource.history));
+        let formats = match &resource.shape {
+            Shape::Texture(shape) => shape.formats.iter().map(|format| format.name()).collect::<Vec<_>>().join(" or "),
+            Shape::Buffer { .. } => "bytes".to_owned(),
+        };
+        line(format!("resource {} of {formats} {:?} {:?}", resource.name, resource.keep, resource.history));
     }
     for spread in &expanded.spreads {
         line(format!("spread {}: {} a frame, {} rounds", spread.name, spread.per_frame, spread.rounds));

@@ -5,7 +5,7 @@
 // G2 / G1 alone.
 
 #import "shared/brdf.wgsl"
-#import "shared/round_half.wgsl"
+#import "shared/round_stored.wgsl"
 
 struct Params {
     // Half vectors along each of two dimensions.
@@ -13,6 +13,9 @@ struct Params {
 }
 
 var<uniform> params: Params;
+
+// Whether the table holds half floats.
+override in_halves: bool = true;
 
 struct Targets {
     // A and B.
@@ -63,5 +66,6 @@ fn integrate(@location(0) uv: vec2<f32>) -> Targets {
             sum += 2.0 * height * seen * vec2<f32>(1.0 - fresnel, fresnel);
         }
     }
-    return Targets(vec4<f32>(round_half(vec3<f32>(sum / f32(count), 0.0)), 1.0));
+    let mean = vec3<f32>(sum / f32(count), 0.0);
+    return Targets(vec4<f32>(select(mean, round_half(mean), in_halves), 1.0));
 }

@@ -1,7 +1,7 @@
 // One face of the environment cube: the mean of the sky's image over each texel, by solid angle.
 
 #import "environment/cube_texel.wgsl"
-#import "shared/round_half.wgsl"
+#import "shared/round_stored.wgsl"
 #import "skybox/sky_image.wgsl"
 
 struct Params {
@@ -41,5 +41,5 @@ fn fill(@builtin(position) position: vec4<f32>) -> Targets {
         sum += covered * (sky_image_radiance(cube_direction(params.f, place)) / environment.sky_unit);
         weight += covered;
     }
-    return Targets(vec4<f32>(round_half(sum / weight), 1.0));
+    return Targets(vec4<f32>(round_stored(sum / weight), 1.0));
 }

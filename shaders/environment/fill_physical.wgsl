@@ -2,7 +2,7 @@
 
 #import "environment/cube_texel.wgsl"
 #import "shared/environment.wgsl"
-#import "shared/round_half.wgsl"
+#import "shared/round_stored.wgsl"
 #import "sky/sky.wgsl"
 
 struct Params {
@@ -31,5 +31,5 @@ fn fill(@builtin(position) position: vec4<f32>) -> Targets {
         sum += sky_radiance(normalize(cube_direction(params.f, place_on_face(corner + part, f32(edge)))));
     }
     let mean = sum * (environment.inverse_light_unit / f32(params.samples * params.samples));
-    return Targets(vec4<f32>(round_half(fit_half(mean)), 1.0));
+    return Targets(vec4<f32>(round_stored(fit_half(mean)), 1.0));
 }

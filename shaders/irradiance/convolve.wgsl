@@ -1,7 +1,7 @@
 // One face of a cube of irradiance / pi: a sum over all texels of a coarse level of the environment.
 
 #import "environment/cube_texel.wgsl"
-#import "shared/round_half.wgsl"
+#import "shared/round_stored.wgsl"
 
 struct Params {
     // The layer: six for each cube.
@@ -40,5 +40,5 @@ fn convolve(@builtin(position) position: vec4<f32>) -> Targets {
         }
     }
     // The weights add up to pi, but for what the sum is off: a constant environment stays what it is.
-    return Targets(vec4<f32>(round_half(sum / weight), 1.0));
+    return Targets(vec4<f32>(round_stored(sum / weight), 1.0));
 }

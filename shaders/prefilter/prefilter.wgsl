@@ -8,7 +8,7 @@
 #import "environment/cube_texel.wgsl"
 #import "prefilter/steps.wgsl"
 #import "shared/brdf.wgsl"
-#import "shared/round_half.wgsl"
+#import "shared/round_stored.wgsl"
 
 struct Params {
     // 6 * step + face, of the first cube; the others follow.
@@ -111,5 +111,5 @@ fn prefilter(@builtin(position) position: vec4<f32>) -> Targets {
     let level_edge = f32(max(edge >> (step / STEPS_PER_LEVEL), 1u));
     let normal = normalize(cube_direction(params.i % 6u, place_on_face(position.xy, level_edge)));
     let alpha = ggx_alpha(step_roughness(step, steps));
-    return Targets(vec4<f32>(round_half(lobe_mean(cube, normal, alpha)), 1.0));
+    return Targets(vec4<f32>(round_stored(lobe_mean(cube, normal, alpha)), 1.0));
 }

@@ -98,13 +98,16 @@ fn in_range(param: &ParamDecl, value: Value) -> Result<Value, String> {
         Value::Float(value) => *value,
         _ => return Ok(value),
     };
-    match param.range {
-        Some((low, high)) if !(low..=high).contains(&number) => {
-            let unit = param.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
-            Err(format!("allowed are {low} to {high}{unit}, and this is {value}"))
-        }
-        _ => Ok(value),
+    let outside = param.range.is_some_and(|(low, high)| !(low..=high).contains(&number));
+    let uneven = param.power_of_two && !matches!(value, Value::Int(whole) if u64::try_from(whole).is_ok_and(u64::is_power_of_two));
+    if !outside && !uneven {
+        return Ok(value);
     }
+    let powers = if param.power_of_two { "powers of two" } else { "" };
+    let between = param.range.map(|(low, high)| format!("{low} to {high}")).unwrap_or_default();
+    let joined = if powers.is_empty() || between.is_empty() { "" } else { " from " };
+    let unit = param.unit.as_ref().map(|unit| format!(" {unit}")).unwrap_or_default();
+    Err(format!("allowed are {powers}{joined}{between}{unit}, and this is {value}"))
 }
 
 fn finite(text: &str) -> Option<f64> {

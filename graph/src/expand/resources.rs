@@ -1,12 +1,15 @@
 //! Resources with numbers in place of expressions, within the device's limits.
 
+use smallvec::SmallVec;
+
 use super::environment::Environment;
 use super::error::ExpandError;
 use super::extents;
-use super::types::{Dimension, Resource, Shape, TextureShape};
+use super::types::{Dimension, Resource, Shape, TextureShape, Value};
 use crate::device::DeviceFacts;
+use crate::format::Format;
 use crate::source::Span;
-use crate::validate::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size, Validated};
+use crate::validate::types::{FormatChoice, Mips, PlacedExpr, ResourceDecl, ResourceKind, Size, Validated};
 
 /// Computes the extents of all resources; `None` if something is wrong.
 pub(super) fn resources(environment: &mut Environment<'_>, validated: &Validated, device: &DeviceFacts) -> Option<Vec<Resource>> {
@@ -78,6 +81,7 @@ impl Check<'_, '_> {
 fn texture(environment: &mut Environment<'_>, name: &str, kind: &ResourceKind, device: &DeviceFacts) -> Option<TextureShape> {
     let ResourceKind::Texture { dimension, formats, format_span, size, size_span, layers, mips, samples } = kind else { return None };
     let dimension = *dimension;
+    let formats = self::formats(environment, formats);
     let output = environment.output;
     let mut check = Check { environment, name, device };
     let limit_2d = device.max_texture_2d;
@@ -176,7 +180,7 @@ fn texture(environment: &mut Environment<'_>, name: &str, kind: &ResourceKind, d
     }
     Some(TextureShape {
         dimension,
-        formats: formats.as_slice().into(),
+        formats,
         format_span: *format_span,
         width,
         height,
@@ -185,4 +189,20 @@ fn texture(environment: &mut Environment<'_>, name: &str, kind: &ResourceKind, d
         mips,
         samples,
     })
+}
+
+/// What choices come to, each format once.
+fn formats(environment: &Environment<'_>, choices: &[FormatChoice]) -> SmallVec<[Format; 4]> {
+    let mut found = SmallVec::new();
+    for choice in choices {
+        let format = match choice {
+            FormatChoice::Named(format) => Some(*format),
+            FormatChoice::Param(name, options) => match environment.params.iter().find(|param| param.name == *name).map(|param| &param.value) {
+                Some(Value::Word(index, _)) => options.get(*index as usize).copied(),
+                _ => None,
+            },
+        };
+        found.extend(format.filter(|format| !found.contains(format)));
+    }
+    found
 }

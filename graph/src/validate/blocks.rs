@@ -1,7 +1,7 @@
 //! Blocks: what they are given, when they stand, and what they bring.
 
 use super::error::ValidateError;
-use super::instances::{Declared, formats};
+use super::instances::Declared;
 use super::params;
 use super::passes::{after, condition, items as passes};
 use super::scope::Scope;
@@ -65,12 +65,12 @@ fn input(scope: &mut Scope<'_>, block: &Text, (name, doc): (&Text, &InputDoc), g
         (InputDoc::Texture { dimension, format, .. }, Some(Declared::Texture(given, given_formats))) => {
             // A face of a cube is an image.
             let given = if *given == DimensionDoc::Cube && part.layer.is_some() { DimensionDoc::D2 } else { *given };
-            let allowed = format.as_ref().map(|format| formats(&format.value));
+            let allowed = format.as_ref().map(|format| format.value.names());
             let stray = allowed.as_ref().and_then(|allowed| given_formats.iter().find(|format| !allowed.contains(format)));
             if given != *dimension {
                 Some(format!("{dimension:?}, and this is {given:?}"))
             } else {
-                let allowed = crate::diagnostic::list_names(allowed.iter().flatten().map(String::as_str));
+                let allowed = crate::diagnostic::list_names(allowed.unwrap_or_default().iter().map(String::as_str));
                 stray.map(|stray| format!("in one of the formats {allowed}, and this may be `{stray}`"))
             }
         }

@@ -4,7 +4,7 @@ use indexmap::IndexMap;
 
 use super::passes::paths;
 use crate::load::Loaded;
-use crate::syntax::document::{BlockDoc, DimensionDoc, Document, FormatDoc, InputDoc, ResourceDoc, Text};
+use crate::syntax::document::{BlockDoc, DimensionDoc, Document, InputDoc, ResourceDoc, Text};
 
 /// A document at one of the places where it stands.
 pub(super) struct Instance<'a> {
@@ -61,15 +61,17 @@ fn add<'a>(
     let first_resource = declared.len() as u32;
     declared.extend(document.resources.values().map(|resource| match resource {
         ResourceDoc::Buffer { .. } => Declared::Buffer,
-        ResourceDoc::Texture { dimension, format, .. } => Declared::Texture(*dimension, formats(&format.value)),
-        ResourceDoc::Image { format, .. } => Declared::Texture(DimensionDoc::D2, vec![format.value.clone()]),
+        ResourceDoc::Texture { dimension, format, .. } => Declared::Texture(*dimension, formats(document, format.value.names())),
+        ResourceDoc::Image { format, .. } => {
+            Declared::Texture(DimensionDoc::D2, formats(document, std::slice::from_ref(&format.value)))
+        }
     }));
     if block.is_none() {
         // Of a block that stands alone, as while it is checked, the inputs are resources that nobody gives.
         declared.extend(document.inputs.values().map(|input| match input {
             InputDoc::Buffer { .. } => Declared::Buffer,
             InputDoc::Texture { dimension, format, .. } => {
-                Declared::Texture(*dimension, format.as_ref().map(|format| formats(&format.value)).unwrap_or_default())
+                Declared::Texture(*dimension, format.as_ref().map(|format| format.value.names().to_vec()).unwrap_or_default())
             }
         }));
     }
@@ -90,9 +92,8 @@ fn add<'a>(
     index
 }
 
-pub(super) fn formats(format: &FormatDoc) -> Vec<String> {
-    match format {
-        FormatDoc::One(format) => vec![format.clone()],
-        FormatDoc::FirstOf(formats) => formats.clone(),
-    }
+/// Every format that names stand for, which are formats or parameters of the document whose options are.
+fn formats(document: &Document, names: &[String]) -> Vec<String> {
+    let options = |name: &String| document.params.get(name.as_str())?.options.as_ref().map(|options| options.value.clone());
+    names.iter().flat_map(|name| options(name).unwrap_or_else(|| vec![name.clone()])).collect()
 }

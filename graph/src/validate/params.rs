@@ -6,6 +6,7 @@ use super::types::ParamDecl;
 use crate::expand::types::{Located, Value};
 use crate::expression::kind_of;
 use crate::syntax::document::{ParamDoc, Text, ValueDoc};
+use crate::syntax::spanned::Spanned;
 
 /// Checks one parameter.
 pub(super) fn param(scope: &mut Scope<'_>, name: &Text, doc: &ParamDoc) -> Option<ParamDecl> {
@@ -51,6 +52,20 @@ pub(super) fn param(scope: &mut Scope<'_>, name: &Text, doc: &ParamDoc) -> Optio
         let reason = format!("`options` are for words, and the default is {}", kind_of(&default));
         scope.report(bad(reason, None, stray.span));
     }
+    let power_of_two = match (&doc.power_of_two, &default) {
+        (None | Some(Spanned { value: false, .. }), _) => false,
+        (Some(_), Value::Int(value)) => {
+            if !u64::try_from(*value).is_ok_and(u64::is_power_of_two) {
+                scope.report(bad(format!("the default {value} is no power of two"), None, doc.default.span));
+            }
+            true
+        }
+        (Some(stray), _) => {
+            let reason = format!("`power_of_two` is for whole numbers, and the default is {}", kind_of(&default));
+            scope.report(bad(reason, None, stray.span));
+            false
+        }
+    };
     let mut range = None;
     if let Some(given) = &doc.range {
         let numbers = (number(&given.value.0), number(&given.value.1));
@@ -77,6 +92,7 @@ pub(super) fn param(scope: &mut Scope<'_>, name: &Text, doc: &ParamDoc) -> Optio
         default,
         range,
         options,
+        power_of_two,
         live: doc.live,
         unit: doc.unit.clone(),
         doc: doc.doc.clone(),

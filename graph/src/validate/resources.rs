@@ -2,7 +2,7 @@
 
 use super::error::ValidateError;
 use super::scope::Scope;
-use super::types::{Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
+use super::types::{FormatChoice, Mips, PlacedExpr, ResourceDecl, ResourceKind, Size};
 use crate::expand::types::{ClearValue, Dimension, Keep, Located, OnResize, Value};
 use crate::expression::Expression;
 use crate::format::{FORMATS, Format, SampleKind};
@@ -34,7 +34,7 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
         }
         ResourceDoc::Image { file, format, loaded, .. } => {
             let formats = formats(scope, &Spanned::new(FormatDoc::One(format.value.clone()), format.span))?;
-            if formats.iter().any(|format| !matches!(format.info().sample, SampleKind::Float | SampleKind::UnfilterableFloat)) {
+            if formats.iter().flat_map(FormatChoice::all).any(|format| !matches!(format.info().sample, SampleKind::Float | SampleKind::UnfilterableFloat)) {
                 let reason = format!("an image holds fractions, and {} does not", format.value);
                 let hint = Some("choose a float or normalised format, such as rgba16float".to_owned());
                 scope.report(ValidateError::BadResource { name: name.value.clone(), reason, hint, span: format.span });
@@ -137,22 +137,51 @@ fn report(scope: &mut Scope<'_>, name: &Text, reason: String, span: Span) {
     scope.report(ValidateError::BadResource { name: name.value.clone(), reason, hint: None, span });
 }
 
-fn formats(scope: &mut Scope<'_>, format: &Spanned<FormatDoc>) -> Option<Vec<Format>> {
-    let names: Vec<&String> = match &format.value {
-        FormatDoc::One(name) => vec![name],
-        FormatDoc::FirstOf(names) => names.iter().collect(),
+fn formats(scope: &mut Scope<'_>, format: &Spanned<FormatDoc>) -> Option<Vec<FormatChoice>> {
+    let names = format.value.names();
+    let choices: Vec<FormatChoice> = names.iter().filter_map(|name| format_choice(scope, name, format.span)).collect();
+    (choices.len() == names.len() && !choices.is_empty()).then_some(choices)
+}
+
+/// A format by its name, or by that of a parameter whose options are formats.
+fn format_choice(scope: &mut Scope<'_>, name: &str, span: Span) -> Option<FormatChoice> {
+    if let Some(format) = Format::from_name(name) {
+        if scope.is_param(name) {
+            scope.report(ValidateError::Ambiguous { name: name.to_owned(), first: "a format", second: "a parameter", span });
+        }
+        return Some(FormatChoice::Named(format));
+    }
+    let formats = || FORMATS.iter().map(|info| info.name.to_owned());
+    let document = scope.document();
+    let Some((declared, param)) = document.params.get_key_value(name) else {
+        // Parameters are known, too, where they are words.
+        let words = document.params.iter().filter(|(_, param)| param.options.is_some()).map(|(name, _)| name.value.clone());
+        let known = words.chain(formats()).collect();
+        scope.report(ValidateError::Unknown { what: "format", name: name.to_owned(), known, span });
+        return None;
     };
-    let mut formats = Vec::new();
-    for name in &names {
-        match Format::from_name(name) {
-            Some(format) => formats.push(format),
+    let Some(options) = &param.options else {
+        let reason = "it chooses a format, and must be a word".to_owned();
+        scope.report(ValidateError::BadParam {
+            name: name.to_owned(),
+            reason,
+            hint: Some("add `options: [\"..\", ..]`, the formats that may be chosen".to_owned()),
+            span: declared.span,
+        });
+        return None;
+    };
+    let mut found = Vec::new();
+    for option in &options.value {
+        match Format::from_name(option) {
+            Some(format) => found.push(format),
             None => {
-                let known = FORMATS.iter().map(|info| info.name.to_owned()).collect();
-                scope.report(ValidateError::Unknown { what: "format", name: (*name).clone(), known, span: format.span });
+                let known = formats().collect();
+                scope.report(ValidateError::Unknown { what: "format", name: option.clone(), known, span: options.span });
             }
         }
     }
-    (formats.len() == names.len() && !formats.is_empty()).then_some(formats)
+    let whole = found.len() == options.value.len();
+    whole.then(|| FormatChoice::Param(format!("{}{name}", scope.instance().path), found))
 }
 
 fn size(scope: &mut Scope<'_>, name: &Text, dimension: Dimension, size: &Spanned<SizeDoc>) -> Option<Size> {
@@ -196,9 +225,9 @@ fn size(scope: &mut Scope<'_>, name: &Text, dimension: Dimension, size: &Spanned
 }
 
 /// Checks a clear value against the formats of its texture.
-pub(super) fn clear_value(scope: &mut Scope<'_>, name: &Text, clear: &Spanned<ClearDoc>, formats: &[Format]) -> Option<ClearValue> {
+pub(super) fn clear_value(scope: &mut Scope<'_>, name: &Text, clear: &Spanned<ClearDoc>, formats: &[FormatChoice]) -> Option<ClearValue> {
     let value = plain_clear(clear.value);
-    for format in formats {
+    for format in formats.iter().flat_map(FormatChoice::all) {
         if let Err(reason) = clear_fits(value, *format) {
             report(scope, name, reason, clear.span);
             return None;

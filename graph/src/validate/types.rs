@@ -50,6 +50,8 @@ pub struct ParamDecl {
     pub range: Option<(f64, f64)>,
     /// The words, if it is one.
     pub options: Vec<String>,
+    /// Other numbers are not allowed.
+    pub power_of_two: bool,
     /// It is expected to change while frames are rendered.
     pub live: bool,
     /// For people.
@@ -102,7 +104,7 @@ pub struct ImageDecl {
 pub enum ResourceKind {
     Texture {
         dimension: Dimension,
-        formats: Vec<Format>,
+        formats: Vec<FormatChoice>,
         format_span: Span,
         size: Size,
         size_span: Span,
@@ -113,6 +115,25 @@ pub enum ResourceKind {
     Buffer {
         size: PlacedExpr,
     },
+}
+
+/// One of the formats that a texture may get.
+#[derive(Debug, Clone, PartialEq)]
+pub enum FormatChoice {
+    /// This one.
+    Named(Format),
+    /// What a parameter, by its whole name, says; the formats of its options.
+    Param(String, Vec<Format>),
+}
+
+impl FormatChoice {
+    /// Every format that it may stand for.
+    pub fn all(&self) -> &[Format] {
+        match self {
+            FormatChoice::Named(format) => std::slice::from_ref(format),
+            FormatChoice::Param(_, options) => options,
+        }
+    }
 }
 
 /// The extent of a texture; its number of dimensions fits the texture's.

@@ -137,19 +137,20 @@ fn resolve(path: &Text, place: Option<Place<'_>>) -> Result<PathBuf, Diagnostic>
 
 /// The path of a file of any kind, which must lie where the scene's files may.
 pub(super) fn locate(path: &Text, place: Option<Place<'_>>) -> Result<PathBuf, Diagnostic> {
-    let error = |code, message| Err(Diagnostic::error(code, message).at(path.span, "this file"));
+    let error = |code, message, hint: &str| Err(Diagnostic::error(code, message).at(path.span, "this file").hint(hint));
     let Some(Place { folder, root }) = place else {
-        return error("scene::no-folder", format!("the scene has no folder, so it can't name the file `{}`", path.value));
+        let message = format!("the scene has no folder, so it can't name the file `{}`", path.value);
+        return error("scene::no-folder", message, "load it from a file");
     };
     let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
     let Ok(resolved) = folder.join(&path.value).canonicalize() else {
-        return error("scene::no-such-file", format!("there is no file `{}` beside the scene file", path.value));
+        let message = format!("there is no file `{}` beside the scene file", path.value);
+        return error("scene::no-such-file", message, "paths start at the folder of the scene file");
     };
     let root = root.unwrap_or(folder);
     if !root.canonicalize().is_ok_and(|root| resolved.starts_with(root)) {
         let message = format!("`{}` lies outside of the folder that files may come from, `{}`", path.value, root.display());
-        return error("scene::outside-root", message)
-            .map_err(|problem| problem.hint("a folder around both can be given as the asset root"));
+        return error("scene::outside-root", message, "a folder around both can be given as the asset root");
     }
     Ok(resolved)
 }

@@ -59,7 +59,7 @@ pub fn show_what_stands_there() -> Result<(), Failed> {
         Eye::new([0.0, 0.0, 1.0], [0.0; 3], 60.0).ron(),
         objects.join(",\n")
     );
-    let (mut series, texels) = (Series::default(), 48);
+    let (mut series, texels) = (Series::default(), 64);
     let mut seen = Vec::new();
     for face in 0..6 {
         let image = series.one(&shot(8, texels, &["face"]).set("face", face), &scene)?;
@@ -104,7 +104,7 @@ fn room(eye: &Eye) -> String {
 
 /// A camera in the place of the probe whose image is a face: a face is the image of a mirror world.
 pub fn are_as_bright_as_the_image() -> Result<(), Failed> {
-    let size = 96;
+    let size = 128;
     let mut series = Series::default();
     for (face, ahead) in [(0, [1.0, 0.0, 0.0]), (5, [0.0, 0.0, -1.0])] {
         let position = [0.2, 1.4, 0.1];
@@ -184,7 +184,15 @@ pub fn mips_are_means() -> Result<(), Failed> {
     Ok(())
 }
 
+/// Of a part of a face, by solid angle.
 fn mean(image: &LinearImage, [x, y]: [u32; 2], edge: u32) -> [f64; 3] {
-    let texels = (y..y + edge).flat_map(|y| (x..x + edge).map(move |x| texel(image, x, y)));
-    texels.fold([0.0; 3], |sum, texel| [0, 1, 2].map(|c| sum[c] + texel[c] / f64::from(edge * edge)))
+    let place = |at: u32| (2.0 * f64::from(at) + 1.0) / f64::from(image.width) - 1.0;
+    let (mut sum, mut weight) = ([0.0; 3], 0.0);
+    for (x, y) in (y..y + edge).flat_map(|y| (x..x + edge).map(move |x| (x, y))) {
+        let covered = (1.0 + place(x).powi(2) + place(y).powi(2)).powf(-1.5);
+        let found = texel(image, x, y);
+        (0..3).for_each(|c| sum[c] += covered * found[c]);
+        weight += covered;
+    }
+    sum.map(|sum| sum / weight)
 }

@@ -65,6 +65,9 @@ pub struct ParamDoc {
     /// The allowed words, if the default is a string. A shader sees the index of the word.
     #[serde(default)]
     pub options: Option<Spanned<Vec<String>>>,
+    /// Only powers of two are allowed. For whole numbers only.
+    #[serde(default)]
+    pub power_of_two: Option<Spanned<bool>>,
     /// It is expected to change while frames are rendered.
     #[serde(default)]
     pub live: bool,

@@ -21,7 +21,7 @@ pub enum ResourceDoc {
         /// 2D unless said otherwise.
         #[serde(default)]
         dimension: DimensionDoc,
-        /// One of WebGPU's format names, or a list in order of preference.
+        /// One of WebGPU's format names, a parameter whose options are some, or a list of either in order of preference.
         format: Spanned<FormatDoc>,
         /// The output's size unless said otherwise.
         #[serde(default)]
@@ -100,6 +100,16 @@ pub enum FormatDoc {
     One(String),
     /// `["rg11b10ufloat", "rgba16float"]`
     FirstOf(Vec<String>),
+}
+
+impl FormatDoc {
+    /// All that it names.
+    pub fn names(&self) -> &[String] {
+        match self {
+            FormatDoc::One(name) => std::slice::from_ref(name),
+            FormatDoc::FirstOf(names) => names,
+        }
+    }
 }
 
 /// The extent of a texture.

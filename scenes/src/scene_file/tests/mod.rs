@@ -10,6 +10,7 @@ use luminaire_graph::syntax::read_document;
 mod hostile;
 mod nodes;
 mod reference;
+mod sky;
 
 use super::SceneDoc;
 use super::{load_scene, load_scene_text};
