@@ -1,12 +1,11 @@
 // Transformed cosines that stand for the lobe of shared/brdf.wgsl (Heitz, Dupuy, Hill and Neubelt 2016, "Real-Time Polygonal-Light Shading
 // with Linearly Transformed Cosines"). examples/fit_ltc.rs made the tables and says what they hold.
 
+#import "shared/linear_clamp.wgsl"
 #import "shared/surface_point.wgsl"
 
 var ltc_matrix: texture_2d<f32>;
 var ltc_magnitude: texture_2d<f32>;
-var linear_clamp: sampler;
-
 struct Lobe {
     // Takes directions, in a frame with the normal along z and the eye in the plane of x and z, to where the lobe is a cosine.
     to_cosine: mat3x3<f32>,

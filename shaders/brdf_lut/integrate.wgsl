@@ -4,6 +4,7 @@
 // a sum over visible half vectors (Heitz 2018, "Sampling the GGX Distribution of Visible Normals", JCGT 7(4)), whose weight is
 // G2 / G1 alone.
 
+#import "brdf_lut/lookup.wgsl"
 #import "shared/brdf.wgsl"
 #import "shared/round_stored.wgsl"
 
@@ -14,8 +15,13 @@ struct Params {
 
 var<uniform> params: Params;
 
-// Whether the table holds half floats.
+// Edge of the table.
+override edge: u32 = 2;
+// Whether it holds half floats.
 override in_halves: bool = true;
+
+// Stands for 0, where nothing is seen.
+const LEAST_COSINE: f32 = 0.001;
 
 struct Targets {
     // A and B.
@@ -44,9 +50,10 @@ fn visible_half_vector(to_eye: vec3<f32>, alpha: f32, number: vec2<f32>) -> vec3
 }
 
 @fragment
-fn integrate(@location(0) uv: vec2<f32>) -> Targets {
-    let n_dot_v = uv.x;
-    let alpha = ggx_alpha(uv.y);
+fn integrate(@builtin(position) position: vec4<f32>) -> Targets {
+    let place = lut_place(floor(position.xy), f32(edge));
+    let n_dot_v = max(place.x, LEAST_COSINE);
+    let alpha = ggx_alpha(place.y);
     let to_eye = vec3<f32>(sqrt(1.0 - n_dot_v * n_dot_v), 0.0, n_dot_v);
     let from_eye = smith_lambda(alpha, n_dot_v);
     var sum = vec2<f32>(0.0);

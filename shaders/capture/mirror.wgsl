@@ -5,12 +5,11 @@
 #import "shared/brdf.wgsl"
 #import "shared/gbuffer_textures.wgsl"
 #import "shared/jitter.wgsl"
+#import "shared/linear_clamp.wgsl"
 #import "shared/reflection_probes.wgsl"
 
 // Radiance / light_unit, a cube for each of the first probes.
 var cubes: texture_cube_array<f32>;
-var linear_clamp: sampler;
-
 struct Params {
     // Metres over which a box ends.
     box_margin: f32,

@@ -5,11 +5,11 @@
 // metal's each for itself: mixed first, a half-metal would get neither's. With it the diffuse part has what the dielectric's lobe leaves, so
 // that a white surface in white light is white; without, it has what Fresnel lets through at single facets.
 
-#import "prefilter/lookup.wgsl"
+#import "brdf_lut/lookup.wgsl"
 #import "shared/math.wgsl"
 #import "shared/surface_point.wgsl"
 
-// A and B by cosine to the eye and roughness (brdf_lut/integrate.wgsl).
+// Of blocks/brdf_lut.ron.
 var brdf_lut: texture_2d<f32>;
 
 // Light that bounces between facets is given back.
@@ -35,7 +35,7 @@ fn lobe_reflectance(f0: vec3<f32>, f90: f32, factors: vec2<f32>) -> vec3<f32> {
 }
 
 fn split_sum(point: SurfacePoint, n_dot_v: f32) -> Reflectance {
-    let factors = textureSampleLevel(brdf_lut, linear_clamp, vec2<f32>(n_dot_v, point.roughness), 0.0).rg;
+    let factors = lobe_factors(brdf_lut, n_dot_v, point.roughness);
     let dielectric = lobe_reflectance(point.specular_weight * point.dielectric_f0, point.specular_weight, factors);
     let metal = lobe_reflectance(point.base_color, 1.0, factors);
     let f0 = point.specular_weight * largest(point.dielectric_f0);

@@ -1,8 +1,7 @@
 // What a glossy surface sees along the mirrored direction, of what blocks/prefilter.ron makes and of what it was made from.
 
 #import "prefilter/steps.wgsl"
-
-var linear_clamp: sampler;
+#import "shared/linear_clamp.wgsl"
 
 fn prefiltered_step(prefiltered: texture_cube_array<f32>, cube: u32, axis: vec3<f32>, step: u32) -> vec3<f32> {
     let layer = STEPS_PER_LEVEL * cube + step % STEPS_PER_LEVEL;
