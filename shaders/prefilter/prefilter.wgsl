@@ -29,6 +29,8 @@ override steps: u32 = 2;
 
 // The chord over which the cosine changes much, wherever the lobe is flat.
 const LONGEST_CHORD: f32 = 0.6;
+// Of the cosine from the middle of a cell to its end, by the cell's size; counts most at the horizon, where the cosine itself is small.
+const COSINE_CHANGE: f32 = 0.5;
 
 struct Targets {
     // In units of the source.
@@ -83,16 +85,19 @@ fn lobe_mean(cube: u32, normal: vec3<f32>, alpha: f32) -> vec3<f32> {
         let size = 2.0 / edge * along;
         // Half a diagonal below the horizon there is nothing of it above.
         if n_dot_l > -0.70710678 * size {
-            // By the chord from the axis to its middle.
-            let relative_size = size / min(sqrt(core + 2.0 - 2.0 * n_dot_l), LONGEST_CHORD);
-            let covered = lobe(alpha, n_dot_l) * max(n_dot_l, 0.0) * square(size) * along;
-            let light = covered * textureLoad(source, texel, 6u * cube + face, level).rgb;
-            if level > 0u && (relative_size > params.cell_size || largest(light) * relative_size > most_in_doubt) {
+            // The chord over which the lobe changes much, from its axis to the middle of the cell.
+            let chord = min(sqrt(core + 2.0 - 2.0 * n_dot_l), LONGEST_CHORD);
+            let height = lobe(alpha, n_dot_l) * square(size) * along;
+            let radiance = textureLoad(source, texel, 6u * cube + face, level).rgb;
+            // By how much lobe and cosine change over the cell.
+            let change = size * (max(n_dot_l, 0.0) / chord + COSINE_CHANGE);
+            if level > 0u && (size > params.cell_size * chord || height * largest(radiance) * change > most_in_doubt) {
                 level -= 1u;
                 cell <<= 2u;
                 continue;
             }
-            sum += light;
+            let covered = height * max(n_dot_l, 0.0);
+            sum += covered * radiance;
             weight += covered;
         }
         cell += 1u;

@@ -13,7 +13,7 @@ use crate::support::picture::{Shot, near, places, settle, shown, texel};
 use crate::support::{compare, read_exr, shared};
 
 /// A test: its name and what it does.
-type Case = (&'static str, fn() -> Result<(), Failed>);
+pub type Case = (&'static str, fn() -> Result<(), Failed>);
 
 pub const CASES: &[Case] = &[
     ("spheres under royal_esplanade", spheres),
@@ -24,7 +24,7 @@ pub const CASES: &[Case] = &[
     ("images keep their light", flux),
 ];
 
-const PARTS: &str = "tests/fixtures/gpu/environment.ron";
+pub const PARTS: &str = "tests/fixtures/gpu/environment.ron";
 /// How many times larger a picture is rendered than its reference.
 const SCALE: u32 = 4;
 
@@ -36,7 +36,7 @@ fn scene(text: &str) -> Result<World, Failed> {
     Ok(load_scene(&path.display().to_string(), Some(Path::new("/"))).map_err(shown)?.world)
 }
 
-fn sky_of(image: &str) -> Result<World, Failed> {
+pub fn sky_of(image: &str) -> Result<World, Failed> {
     let path = shared().ok_or("the reference data is missing")?.canonicalize()?.join("assets/hdr").join(image);
     scene(&format!("(cameras: {{ \"eye\": (position: (0, 0, 1), target: (0, 0, 0)) }}, environment: (image: {path:?}))"))
 }
@@ -105,7 +105,7 @@ fn furnace() -> Result<(), Failed> {
 }
 
 /// Relative root mean square over directions.
-fn apart(reference: &LinearImage, image: &LinearImage, scale: f64) -> f64 {
+pub fn apart(reference: &LinearImage, image: &LinearImage, scale: f64) -> f64 {
     let (mut error, mut square) = (0.0, 0.0);
     for (x, y) in places(image) {
         let weight = ((f64::from(y) + 0.5) / f64::from(image.height) * PI).sin();

@@ -1,7 +1,9 @@
-//! Pictures against path-traced references, whose pixels are means over their area: direct light here, that of the sky in `image_based`.
+//! Pictures against path-traced references, whose pixels are means over their area: direct light here, that of the sky in `image_based`
+//! and `environment_maps`.
 
 #![allow(clippy::print_stdout, reason = "the figures are worth seeing")]
 
+mod environment_maps;
 mod image_based;
 #[path = "../support/mod.rs"]
 mod support;
@@ -172,6 +174,7 @@ fn main() {
     let mut trials: Vec<Trial> =
         CASES.iter().map(|case| trial(&format!("{}, {}", case.reference, case.area_lights), missing, || agrees(case))).collect();
     trials.push(trial("leak_sealed is black behind the wall", missing, sealed_room_is_black));
-    trials.extend(image_based::CASES.iter().map(|(name, run)| trial(name, missing, run)));
+    let by_the_sky = image_based::CASES.iter().chain(environment_maps::CASES);
+    trials.extend(by_the_sky.map(|(name, run)| trial(name, missing, run)));
     libtest_mimic::run(&arguments, trials).exit();
 }

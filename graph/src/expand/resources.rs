@@ -178,17 +178,7 @@ fn texture(environment: &mut Environment<'_>, name: &str, kind: &ResourceKind, d
         check.bad(format!("the depth format {format} needs a 2D or cube texture"), "use `dimension: D2` or `Cube`", *format_span);
         return None;
     }
-    Some(TextureShape {
-        dimension,
-        formats,
-        format_span: *format_span,
-        width,
-        height,
-        depth,
-        layers,
-        mips,
-        samples,
-    })
+    Some(TextureShape { dimension, formats, format_span: *format_span, width, height, depth, layers, mips, samples })
 }
 
 /// What choices come to, each format once.
@@ -197,10 +187,12 @@ fn formats(environment: &Environment<'_>, choices: &[FormatChoice]) -> SmallVec<
     for choice in choices {
         let format = match choice {
             FormatChoice::Named(format) => Some(*format),
-            FormatChoice::Param(name, options) => match environment.params.iter().find(|param| param.name == *name).map(|param| &param.value) {
-                Some(Value::Word(index, _)) => options.get(*index as usize).copied(),
-                _ => None,
-            },
+            FormatChoice::Param(name, options) => {
+                match environment.params.iter().find(|param| param.name == *name).map(|param| &param.value) {
+                    Some(Value::Word(index, _)) => options.get(*index as usize).copied(),
+                    _ => None,
+                }
+            }
         };
         found.extend(format.filter(|format| !found.contains(format)));
     }

@@ -62,9 +62,7 @@ fn add<'a>(
     declared.extend(document.resources.values().map(|resource| match resource {
         ResourceDoc::Buffer { .. } => Declared::Buffer,
         ResourceDoc::Texture { dimension, format, .. } => Declared::Texture(*dimension, formats(document, format.value.names())),
-        ResourceDoc::Image { format, .. } => {
-            Declared::Texture(DimensionDoc::D2, formats(document, std::slice::from_ref(&format.value)))
-        }
+        ResourceDoc::Image { format, .. } => Declared::Texture(DimensionDoc::D2, formats(document, std::slice::from_ref(&format.value))),
     }));
     if block.is_none() {
         // Of a block that stands alone, as while it is checked, the inputs are resources that nobody gives.

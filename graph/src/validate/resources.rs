@@ -34,7 +34,11 @@ pub(super) fn resource(scope: &mut Scope<'_>, name: &Text, doc: &ResourceDoc) ->
         }
         ResourceDoc::Image { file, format, loaded, .. } => {
             let formats = formats(scope, &Spanned::new(FormatDoc::One(format.value.clone()), format.span))?;
-            if formats.iter().flat_map(FormatChoice::all).any(|format| !matches!(format.info().sample, SampleKind::Float | SampleKind::UnfilterableFloat)) {
+            if formats
+                .iter()
+                .flat_map(FormatChoice::all)
+                .any(|format| !matches!(format.info().sample, SampleKind::Float | SampleKind::UnfilterableFloat))
+            {
                 let reason = format!("an image holds fractions, and {} does not", format.value);
                 let hint = Some("choose a float or normalised format, such as rgba16float".to_owned());
                 scope.report(ValidateError::BadResource { name: name.value.clone(), reason, hint, span: format.span });

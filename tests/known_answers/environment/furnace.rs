@@ -96,7 +96,8 @@ fn passed(cosine: f64) -> f64 {
 pub fn closed_forms() -> Result<(), Failed> {
     let factors = table()?;
     let (mut series, mut worst) = (Series::default(), [0.0f64; 2]);
-    for (compensated, base_color) in [true, false].into_iter().flat_map(|on| [[0.0; 3], [0.5; 3], [0.9, 0.55, 0.2]].map(|base| (on, base))) {
+    for (compensated, base_color) in [true, false].into_iter().flat_map(|on| [[0.0; 3], [0.5; 3], [0.9, 0.55, 0.2]].map(|base| (on, base)))
+    {
         for (row, column, cosine, light) in furnace(&mut series, base_color, compensated)? {
             // Near the edge and where the lobe is narrow the table of 32 texels that is read here is too coarse.
             if cosine < 0.3 || column == 0 {

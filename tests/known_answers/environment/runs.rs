@@ -82,7 +82,11 @@ pub fn day() -> Result<(), Failed> {
     for height in [49.0, 10.0, -2.0] {
         whole.update(&mut scene(height)?).map_err(shown)?;
         let sun = ["air", "physical_sky", "light", "sun_shadows"];
-        check(&format!("the sun at {height}"), &ran(&mut whole)?, &[&sun, &["environment", "irradiance", "prefilter", "ibl_resolve"], &FOLLOWS])?;
+        check(
+            &format!("the sun at {height}"),
+            &ran(&mut whole)?,
+            &[&sun, &["environment", "irradiance", "prefilter", "ibl_resolve"], &FOLLOWS],
+        )?;
         parts.update(&mut scene(height)?).map_err(shown)?;
         let frames = settle(&mut parts)?;
         let most = |part: &str| frames.iter().map(|ran| ran.iter().filter(|pass| pass.starts_with(part)).count()).max();

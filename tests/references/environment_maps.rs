@@ -1,0 +1,124 @@
+//! What the means over lobes of real images must not have: single bright texels, seams between faces, and errors of the sum.
+
+use libtest_mimic::Failed;
+use luminaire::image_file::LinearImage;
+use luminaire::scenes::World;
+use luminaire::session::Session;
+
+use crate::image_based::{Case, PARTS, apart, sky_of};
+use crate::support::picture::{Shot, places, settle, shown, texel};
+
+pub const CASES: &[Case] = &[
+    ("no texel of a lobe is brighter than its lamps make it", fireflies),
+    ("lobes have no seams between faces", seams),
+    ("finer sums of lobes change little", finer),
+];
+
+const ROUGHNESSES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+/// Texels around the horizon: more than the faces have.
+const COLUMNS: u32 = 512;
+
+/// The rougher levels of the pipeline's, without the sharpest.
+fn shot(output: &str, roughness: f64) -> Shot {
+    Shot::of(PARTS, [64, 32], &[output]).set("texels", 128).set("levels", 3).set("columns", COLUMNS).set("roughness", roughness)
+}
+
+/// Of a texel in the middle of a face that holds a roughness, radians: faces of 32 texels hold roughness 1, and halve where it doubles.
+fn pitch(roughness: f64) -> f64 {
+    2.0 * roughness / 32.0
+}
+
+fn read(session: &mut Session, world: &mut World, shot: &Shot) -> Result<LinearImage, Failed> {
+    session.reload(world, &shot.request()).map_err(shown)?;
+    settle(session)?;
+    session.read_output(&shot.outputs[0]).map_err(shown)
+}
+
+/// Light from one direction makes a peak, whose top falls to its neighbours as the lobe does: by (1 + tan^2(t / 2) / alpha^2)^2 over an angle
+/// t, since the half vector turns by half of it. Any light is a sum of such peaks, and its mean over the lobe falls no faster from a texel to
+/// the next; between those it is interpolated.
+fn fireflies() -> Result<(), Failed> {
+    for name in ["one_bright_texel", "over_f16_max", "night_1k", "studio_small_1k"] {
+        let mut world = sky_of(&format!("{name}.hdr"))?;
+        let mut session = shot("lobes", 0.25).session(&mut world)?;
+        for roughness in ROUGHNESSES {
+            let image = read(&mut session, &mut world, &shot("lobes", roughness))?;
+            let most = (1.0 + ((pitch(roughness) / 2.0).tan() / roughness.powi(2)).powi(2)).powi(2);
+            let light = |x: u32, y: u32| {
+                let [r, g, b, _] = texel(&image, x % image.width, y);
+                r + g + b
+            };
+            let mean = places(&image).map(|(x, y)| light(x, y)).sum::<f64>() / f64::from(image.width * image.height);
+            let mut worst = 0.0f64;
+            // What is darker than the mean is nobody's firefly, and may be less than half floats can tell.
+            for (x, y) in places(&image).filter(|(x, y)| (1..image.height - 1).contains(y) && light(*x, *y) > mean) {
+                let around = [light(x + 1, y), light(x + image.width - 1, y), light(x, y + 1), light(x, y - 1)];
+                worst = worst.max(light(x, y) / around.into_iter().fold(0.0, f64::max));
+            }
+            println!("{name}, roughness {roughness}: {worst:.4} of the brightest neighbour, {most:.4} by the lobe");
+            // Half floats round.
+            if worst > most + 0.001 || mean <= 0.0 {
+                return Err(format!("{name}, roughness {roughness}: {worst} of the brightest neighbour and not {most}, mean {mean}").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Of sRGB, where the mean of the picture is a middle grey.
+fn code(value: f64, exposure: f64) -> f64 {
+    let value = (value * exposure).clamp(0.0, 1.0);
+    255.0 * if value <= 0.003_130_8 { 12.92 * value } else { 1.055 * value.powf(1.0 / 2.4) - 0.055 }
+}
+
+/// The step across an edge of the cube, against that of finer sums on faces with twice as many texels.
+fn seams() -> Result<(), Failed> {
+    for name in ["royal_esplanade_1k", "studio_small_1k", "night_1k", "over_f16_max"] {
+        let mut world = sky_of(&format!("{name}.hdr"))?;
+        let mut session = shot("edges", 1.0).session(&mut world)?;
+        let mut codes_of = |levels: u32, roughness: f64, fineness: f64| {
+            // Texels are half as wide at the edges of a face as in its middle. So these are the middles of two on each side.
+            let plain = shot("edges", roughness).set("spacing", pitch(roughness) / 2.0).set("texels", 64).set("levels", levels);
+            let fine = plain.set("cell_size", 0.4 / fineness).set("doubt", 0.001 / fineness);
+            let image = read(&mut session, &mut world, &fine)?;
+            let mean = places(&image).map(|(x, y)| texel(&image, x, y)[1]).sum::<f64>() / f64::from(image.width * image.height);
+            let codes = places(&image).flat_map(|(x, y)| [0, 1, 2].map(|channel| code(texel(&image, x, y)[channel], 0.18 / mean)));
+            Ok::<Vec<f64>, Failed>(codes.collect())
+        };
+        for roughness in [0.75, 1.0] {
+            let plain = codes_of(2, roughness, 1.0)?;
+            let fine = codes_of(1, roughness, 2.0)?;
+            let errors: Vec<f64> = plain.iter().zip(&fine).map(|(plain, fine)| plain - fine).collect();
+            // Four places across, three channels each.
+            let across = errors.chunks(12).flat_map(|row| [0, 1, 2].map(|channel| (row[6 + channel] - row[3 + channel]).abs()));
+            let (seam, most) = (across.fold(0.0, f64::max), errors.iter().map(|error| error.abs()).fold(0.0, f64::max));
+            println!("{name}, roughness {roughness}: steps at edges are off by {seam:.3} codes, all places by {most:.3}");
+            if seam > 1.0 || plain.iter().all(|code| *code < 50.0) {
+                return Err(format!("{name}, roughness {roughness}: a seam of {seam} codes").into());
+            }
+        }
+    }
+    Ok(())
+}
+
+/// Half the size of cells and half of the doubt, which is four times as many cells.
+fn finer() -> Result<(), Failed> {
+    for (name, most) in [("studio_small_1k", 0.01), ("night_1k", 0.01), ("royal_esplanade_1k", 0.03)] {
+        let mut world = sky_of(&format!("{name}.hdr"))?;
+        let plain = |roughness: f64| shot("lobes", roughness).set("texels", 64).set("levels", 2).set("columns", 64);
+        let mut session = plain(0.25).session(&mut world)?;
+        let mut images = Vec::new();
+        for roughness in ROUGHNESSES {
+            images.push(read(&mut session, &mut world, &plain(roughness))?);
+        }
+        for (roughness, image) in ROUGHNESSES.into_iter().zip(images) {
+            let fine = plain(roughness).set("cell_size", 0.2).set("doubt", 0.0005);
+            let error = apart(&read(&mut session, &mut world, &fine)?, &image, 1.0);
+            println!("{name}, roughness {roughness}: {error:.5}");
+            if error > most {
+                return Err(format!("{name}, roughness {roughness}: finer cells change {error}").into());
+            }
+        }
+    }
+    Ok(())
+}
