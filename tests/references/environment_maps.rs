@@ -73,29 +73,29 @@ fn code(value: f64, exposure: f64) -> f64 {
 
 /// The step across an edge of the cube, against that of finer sums on faces with twice as many texels.
 fn seams() -> Result<(), Failed> {
+    // Between the last two steps, and of both.
+    let roughness = 0.75;
+    // Texels are half as wide at the edges of a face as in its middle. So these are the middles of two on each side.
+    let plain = shot("edges", roughness).set("spacing", pitch(roughness) / 2.0).set("texels", 64).set("levels", 2);
+    let fine = plain.clone().set("levels", 1).set("cell_size", 0.2).set("doubt", 0.0005);
     for name in ["royal_esplanade_1k", "studio_small_1k", "night_1k", "over_f16_max"] {
         let mut world = sky_of(&format!("{name}.hdr"))?;
-        let mut session = shot("edges", 1.0).session(&mut world)?;
-        let mut codes_of = |levels: u32, roughness: f64, fineness: f64| {
-            // Texels are half as wide at the edges of a face as in its middle. So these are the middles of two on each side.
-            let plain = shot("edges", roughness).set("spacing", pitch(roughness) / 2.0).set("texels", 64).set("levels", levels);
-            let fine = plain.set("cell_size", 0.4 / fineness).set("doubt", 0.001 / fineness);
-            let image = read(&mut session, &mut world, &fine)?;
-            let mean = places(&image).map(|(x, y)| texel(&image, x, y)[1]).sum::<f64>() / f64::from(image.width * image.height);
-            let codes = places(&image).flat_map(|(x, y)| [0, 1, 2].map(|channel| code(texel(&image, x, y)[channel], 0.18 / mean)));
-            Ok::<Vec<f64>, Failed>(codes.collect())
+        let mut session = plain.session(&mut world)?;
+        let (plain, fine) = (read(&mut session, &mut world, &plain)?, read(&mut session, &mut world, &fine)?);
+        let mean = places(&fine).map(|(x, y)| texel(&fine, x, y)[1]).sum::<f64>() / f64::from(fine.width * fine.height);
+        let error = |(x, y): (u32, u32), channel: usize| {
+            let [plain, fine] = [&plain, &fine].map(|image| code(texel(image, x, y)[channel], 0.18 / mean));
+            plain - fine
         };
-        for roughness in [0.75, 1.0] {
-            let plain = codes_of(2, roughness, 1.0)?;
-            let fine = codes_of(1, roughness, 2.0)?;
-            let errors: Vec<f64> = plain.iter().zip(&fine).map(|(plain, fine)| plain - fine).collect();
-            // Four places across, three channels each.
-            let across = errors.chunks(12).flat_map(|row| [0, 1, 2].map(|channel| (row[6 + channel] - row[3 + channel]).abs()));
-            let (seam, most) = (across.fold(0.0, f64::max), errors.iter().map(|error| error.abs()).fold(0.0, f64::max));
-            println!("{name}, roughness {roughness}: steps at edges are off by {seam:.3} codes, all places by {most:.3}");
-            if seam > 1.0 || plain.iter().all(|code| *code < 50.0) {
-                return Err(format!("{name}, roughness {roughness}: a seam of {seam} codes").into());
-            }
+        let (mut seam, mut most) = (0.0f64, 0.0f64);
+        for (y, channel) in (0..plain.height).flat_map(|y| [0, 1, 2].map(|channel| (y, channel))) {
+            seam = seam.max((error((2, y), channel) - error((1, y), channel)).abs());
+            most = (0..4).fold(most, |most, x| most.max(error((x, y), channel).abs()));
+        }
+        println!("{name}: steps at edges are off by {seam:.3} codes, all places by {most:.3}");
+        // Measured: 0.15 and 1.1. A faint error in everything is no seam.
+        if seam > 1.0 || mean <= 0.0 {
+            return Err(format!("{name}: a seam of {seam} codes").into());
         }
     }
     Ok(())

@@ -116,9 +116,9 @@ pub fn are_as_bright_as_the_image() -> Result<(), Failed> {
         let (mut worst, mut count) = (0.0_f64, 0);
         for (x, y) in places(&images["face"]) {
             // Where shadows end, maps of other sizes end them elsewhere.
-            let smooth = (x.saturating_sub(2)..=(x + 2).min(size - 1)).all(|x| {
+            let smooth = (x.saturating_sub(3)..=(x + 3).min(size - 1)).all(|x| {
                 let near = |y: u32| (seen(x, y)[0] / seen(x, y + 1)[0] - 1.0).abs() < 0.02;
-                (y.saturating_sub(2)..(y + 2).min(size - 1)).all(near)
+                (y.saturating_sub(3)..(y + 3).min(size - 1)).all(near)
             });
             if !smooth {
                 continue;

@@ -4,7 +4,7 @@ use glam::DVec3;
 use libtest_mimic::Failed;
 
 use super::shot;
-use crate::support::picture::{Eye, Shot, places, texel};
+use crate::support::picture::{Eye, Series, Shot, places, texel};
 
 /// Pixels across the image, metres across a pixel, steps of the camera.
 const EDGE: u32 = 128;
@@ -15,7 +15,7 @@ const STEPS: u32 = 32;
 /// all images show, the standard deviation of its light over the mean; of all places, the 95th percentile. The camera is orthographic, so
 /// that the same places fall on pixels' centres again.
 fn flicker(shot: &Shot) -> Result<f64, Failed> {
-    let mut images = Vec::new();
+    let (mut images, mut series) = (Vec::new(), Series::default());
     for step in 0..=STEPS {
         let x = f64::from(step) * PIXEL;
         let scene = format!(
@@ -26,7 +26,7 @@ fn flicker(shot: &Shot) -> Result<f64, Failed> {
                 \"bars\": (shape: Box(size: (0.1, 0.1, 30)), surface: (specular: 0), translation: (0, 1.6, 0), repeat: (count: (80, 1, 1), spacing: (0.25, 1, 1))) }})",
             f64::from(EDGE) * PIXEL
         );
-        images.push(shot.one(&scene)?);
+        images.push(series.one(shot, &scene)?);
     }
     let shown = |image: usize, x: u32, y: u32| texel(&images[image], x, y)[0];
     let mut spreads = Vec::new();
