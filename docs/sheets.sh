@@ -58,3 +58,17 @@ for filter in hardware pcf3 poisson pcss; do
 done
 # shellcheck disable=SC2086 # One word for each image.
 "$luminaire" sheet $stills --columns 4 --shrink 2 -o docs/lights_and_shadows.png
+
+# Light from all around: direct light alone in the morning, with the sky's, the evening, materials under a clear sky; a hall, things that
+# captured what is around them, mirrors in a captured room, and occlusion alone.
+stills=""
+still direct pbr day --time 1.2 --set sky=physical --set samples=4
+still lit ibl day --time 1.2 --set sky=physical --set samples=4
+still dusk ibl day --time 11.4 --set sky=physical --set samples=4
+still materials ibl materials --set sky=physical --set samples=4
+still hall ibl hall --set samples=4
+still scene2 ibl scene2 --set samples=4
+still mirrors ibl mirrors --set samples=4
+still occlusion occlusion room --set samples=16
+# shellcheck disable=SC2086 # One word for each image.
+"$luminaire" sheet $stills --columns 4 --shrink 2 -o docs/image_based_light.png
