@@ -13,13 +13,13 @@ pub const CASES: &[Case] = &[
     ("finer sums of lobes change little, and no edge of the cube", finer),
 ];
 
-const ROUGHNESSES: [f64; 4] = [0.25, 0.5, 0.75, 1.0];
+const ROUGHNESSES: [f64; 4] = [0.36, 0.5, 0.75, 1.0];
 /// Texels around the horizon: more than the faces have.
 const COLUMNS: u32 = 512;
 
-/// The rougher levels of the pipeline's, without the sharpest.
+/// The rougher levels of the pipeline's, without the sharpest two.
 fn shot(output: &str, roughness: f64) -> Shot {
-    Shot::of(PARTS, [64, 32], &[output]).set("texels", 128).set("levels", 3).set("columns", COLUMNS).set("roughness", roughness)
+    Shot::of(PARTS, [64, 32], &[output]).set("texels", 64).set("levels", 2).set("columns", COLUMNS).set("roughness", roughness)
 }
 
 /// Of a texel in the middle of a face that holds a roughness, radians: faces of 32 texels hold roughness 1, and halve where it doubles.
@@ -39,7 +39,7 @@ fn read(session: &mut Session, world: &mut World, shot: &Shot) -> Result<LinearI
 fn fireflies() -> Result<(), Failed> {
     for name in ["one_bright_texel", "over_f16_max", "night_1k", "studio_small_1k"] {
         let mut world = sky_of(&format!("{name}.hdr"))?;
-        let mut session = shot("lobes", 0.25).session(&mut world)?;
+        let mut session = shot("lobes", 1.0).session(&mut world)?;
         for roughness in ROUGHNESSES {
             let image = read(&mut session, &mut world, &shot("lobes", roughness))?;
             let most = (1.0 + ((pitch(roughness) / 2.0).tan() / roughness.powi(2)).powi(2)).powi(2);
@@ -67,16 +67,15 @@ fn fireflies() -> Result<(), Failed> {
 /// Against half the size of cells and half of the doubt, which is four times as many cells: all directions, and the steps across the edges of
 /// the cube.
 fn finer() -> Result<(), Failed> {
-    for (name, most) in [("studio_small_1k", 0.01), ("night_1k", 0.01), ("royal_esplanade_1k", 0.03), ("over_f16_max", 0.03)] {
+    for (name, most) in [("studio_small_1k", 0.01), ("night_1k", 0.01), ("royal_esplanade_1k", 0.03)] {
         let mut world = sky_of(&format!("{name}.hdr"))?;
         let plain = |roughness: f64| {
             // Texels are half as wide at the edges of a face as in its middle. So these are the middles of two on each side.
-            let shot =
-                shot("lobes", roughness).set("texels", 64).set("levels", 2).set("columns", 64).set("spacing", pitch(roughness) / 2.0);
+            let shot = shot("lobes", roughness).set("columns", 64).set("spacing", pitch(roughness) / 2.0);
             Shot { outputs: vec!["lobes".to_owned(), "edges".to_owned()], ..shot }
         };
         let fine = |roughness: f64| plain(roughness).set("cell_size", 0.2).set("doubt", 0.0005);
-        let mut session = plain(0.25).session(&mut world)?;
+        let mut session = plain(1.0).session(&mut world)?;
         let mut read = |shot: Shot| {
             let lobes = read(&mut session, &mut world, &shot)?;
             Ok::<_, Failed>((lobes, session.read_output("edges").map_err(shown)?))
@@ -87,7 +86,7 @@ fn finer() -> Result<(), Failed> {
             let ((lobes, edges), (fine_lobes, fine_edges)) = (plain?, fine?);
             let (error, seam) = (apart(&fine_lobes, &lobes, 1.0), seam(&edges, &fine_edges));
             println!("{name}, roughness {roughness}: {error:.5}, steps at edges are off by {seam:.3} codes");
-            // Measured: 0.0039 (0.009 for studio with faces of 128 texels), and 0.55 codes.
+            // Measured: 0.0067 and 0.2 codes; 0.0089 for studio at roughness 0.25, with faces of 256 texels.
             if error > most || seam > 1.0 {
                 return Err(
                     format!("{name}, roughness {roughness}: finer cells change {error}, and a step at an edge by {seam} codes").into()
