@@ -9,7 +9,7 @@ use luminaire::scenes::World;
 use luminaire::session::load_scene;
 use serde_json::Value;
 
-use crate::support::picture::{Shot, near, places, settle, shown, texel};
+use crate::support::picture::{Series, Shot, near, places, shown, texel};
 use crate::support::{compare, read_exr, shared};
 
 /// A test: its name and what it does.
@@ -80,8 +80,8 @@ fn grid(name: &str, environment: &str, texels: u32) -> Result<LinearImage, Faile
 fn spheres() -> Result<(), Failed> {
     let image = grid("ibl_grid", "image: \"SHARED/assets/hdr/royal_esplanade_1k.hdr\"", 256)?;
     let folder = shared().ok_or("the reference data is missing")?.join("references/ibl_grid");
-    // What a perfect split sum shows, and the truth. Measured: 0.00015 and 0.0122, where the split sum itself is off by 0.0119.
-    for (name, most) in [("splitsum", 0.001), ("isolated", 0.015)] {
+    // What a perfect split sum shows, and the truth. Measured: 0.00011 and 0.0121, where the split sum itself is off by 0.0119.
+    for (name, most) in [("splitsum", 0.0002), ("isolated", 0.0125)] {
         let difference = compare(&read_exr(&folder.join(format!("ibl_grid.{name}.exr"))), &image);
         println!("{name}: {difference:?}");
         if difference.rel_mse > most || (difference.lum_ratio - 1.0).abs() > 0.01 {
@@ -103,7 +103,7 @@ fn helmet() -> Result<(), Failed> {
     let difference = compare(&read_exr(&folder.join("references/helmet/helmet.isolated.exr")), &image);
     println!("{difference:?}");
     // Measured: 0.0144 and 0.0039: two thirds of it in silhouettes, the rest on metal seen from the side, whose lobes are not round.
-    if difference.rel_mse < 0.018 && difference.rel_mse_trim1 < 0.005 { Ok(()) } else { Err(format!("{difference:?}").into()) }
+    if difference.rel_mse < 0.016 && difference.rel_mse_trim1 < 0.0045 { Ok(()) } else { Err(format!("{difference:?}").into()) }
 }
 
 fn furnace() -> Result<(), Failed> {
@@ -120,8 +120,8 @@ fn furnace() -> Result<(), Failed> {
         worst = worst.max((mean(&image) / mean(&reference) - 1.0).abs());
     }
     println!("worst mean of a sphere is off by {worst:.5}");
-    // Measured: 0.0042, a white metal of roughness 1.
-    if worst < 0.005 { Ok(()) } else { Err(format!("a mean is off by {worst}").into()) }
+    // Measured: 0.0007.
+    if worst < 0.001 { Ok(()) } else { Err(format!("a mean is off by {worst}").into()) }
 }
 
 /// Relative root mean square over directions.
@@ -145,37 +145,35 @@ fn tables(name: &str, file: &str, texels: u32) -> Result<(), Failed> {
     let outputs = ["irradiance_sh", "irradiance_cube", "lobes", "coefficients"];
     // Faces of 32 texels hold roughness 1.
     let shot = Shot::of(PARTS, [64, 32], &outputs).set("texels", texels).set("levels", texels.ilog2() - 4);
-    let mut session = shot.session(&mut world)?;
-    settle(&mut session)?;
-    let read = |session: &luminaire::session::Session, output: &str| session.read_output(output).map_err(shown);
+    let mut series = Series::default();
+    let images = series.take_world(&shot, &mut world)?;
     let irradiance = table("irradiance");
-    let sh = apart(&irradiance, &read(&session, "irradiance_sh")?, 1.0 / PI);
-    let cube = apart(&irradiance, &read(&session, "irradiance_cube")?, 1.0 / PI);
+    let sh = apart(&irradiance, &images["irradiance_sh"], 1.0 / PI);
+    let cube = apart(&irradiance, &images["irradiance_cube"], 1.0 / PI);
     println!("irradiance: {sh:.5} by coefficients (which end at order 2), {cube:.5} by the cube");
     // Measured: 0.0035 and 0.0011.
-    if cube > 0.005 {
+    if cube > 0.004 {
         return Err(format!("irradiance is off by {cube}").into());
     }
     let known: Value = serde_json::from_str(&std::fs::read_to_string(folder.join(format!("{name}.json")))?)?;
-    let found = read(&session, "coefficients")?;
+    let found = &images["coefficients"];
     let coefficient = |index: usize, channel: usize| known["sh_l2_radiance"]["rgb"][index][channel].as_f64().ok_or("no number");
     let mut worst = 0.0f64;
     for (index, channel) in (0..9).flat_map(|index| (0..3).map(move |channel| (index, channel))) {
-        let error = (texel(&found, index as u32, 0)[channel] - coefficient(index, channel)?).abs() / coefficient(0, channel)?;
+        let error = (texel(found, index as u32, 0)[channel] - coefficient(index, channel)?).abs() / coefficient(0, channel)?;
         worst = worst.max(error);
     }
     println!("coefficients: {worst:.5} of the first");
-    // Measured: 0.0015 and 0.0002.
-    if worst > 0.005 {
+    // Measured: 0.0016 and 0.0002.
+    if worst > 0.002 {
         return Err(format!("a coefficient is off by {worst} of the first").into());
     }
-    for (what, roughness) in [("r025", 0.25), ("r050", 0.5), ("r075", 0.75), ("r100", 1.0)] {
-        session.reload(&mut world, &shot.clone().set("roughness", roughness).request()).map_err(shown)?;
-        settle(&mut session)?;
-        let error = apart(&table(&format!("prefilter_{what}")), &read(&session, "lobes")?, 1.0);
+    // The third lies between two steps. Measured: 0.0059, 0.0015, 0.0150, 0.0019.
+    for (what, roughness, most) in [("r025", 0.25, 0.007), ("r050", 0.5, 0.002), ("r075", 0.75, 0.016), ("r100", 1.0, 0.0025)] {
+        let lobes = &series.take_world(&shot.clone().set("roughness", roughness), &mut world)?["lobes"];
+        let error = apart(&table(&format!("prefilter_{what}")), lobes, 1.0);
         println!("lobe of roughness {roughness}: {error:.5}");
-        // Measured: up to 0.0064.
-        if error > 0.02 {
+        if error > most {
             return Err(format!("the mean over the lobe of roughness {roughness} is off by {error}").into());
         }
     }
@@ -184,14 +182,21 @@ fn tables(name: &str, file: &str, texels: u32) -> Result<(), Failed> {
 
 fn lobe_table() -> Result<(), Failed> {
     let reference = read_exr(&shared().ok_or("the reference data is missing")?.join("references/tables/dfg_smith_correlated_32.exr"));
-    let image = Shot::of(PARTS, [64, 32], &["table"]).take_world(&mut sky_of("white_1.hdr")?)?.remove("table").ok_or("no table")?;
-    let error = |(x, y): (u32, u32)| {
-        let (a, b) = (texel(&image, x, y), texel(&reference, x, y));
-        (a[0] - b[0]).abs().max((a[1] - b[1]).abs())
-    };
-    let worst = places(&image).map(error).fold(0.0, f64::max);
-    println!("worst error {worst:.5}");
-    if worst < 0.001 { Ok(()) } else { Err(format!("off by {worst}").into()) }
+    let mut world = sky_of("white_1.hdr")?;
+    for format in ["rg16float", "rg32float"] {
+        let image = &Shot::of(PARTS, [64, 32], &["table"]).set("table_format", format).take_world(&mut world)?["table"];
+        let error = |(x, y): (u32, u32)| {
+            let (a, b) = (texel(image, x, y), texel(&reference, x, y));
+            (a[0] - b[0]).abs().max((a[1] - b[1]).abs())
+        };
+        let worst = places(image).map(error).fold(0.0, f64::max);
+        println!("worst error {worst:.5} in {format}");
+        // Measured: 0.0007.
+        if worst > 0.0009 {
+            return Err(format!("{format} is off by {worst}").into());
+        }
+    }
+    Ok(())
 }
 
 /// The first coefficient against the sum over the image, by exact solid angles.
@@ -203,10 +208,11 @@ fn flux() -> Result<(), Failed> {
         .filter(|name| name.ends_with(".hdr"))
         .collect();
     names.sort();
+    let (shot, mut series) = (Shot::of(PARTS, [64, 32], &["coefficients"]), Series::default());
     for name in &names {
         let mut world = sky_of(name)?;
         let sky = world.resource::<luminaire::scenes::world::SkyImage>().image.clone();
-        let image = Shot::of(PARTS, [64, 32], &["coefficients"]).take_world(&mut world)?.remove("coefficients").ok_or("no coefficients")?;
+        let coefficients = &series.take_world(&shot, &mut world)?["coefficients"];
         for channel in 0..3 {
             let edge = |row: u32| (f64::from(row) / f64::from(sky.height) * PI).cos();
             let of_row = |row: u32| {
@@ -215,7 +221,7 @@ fn flux() -> Result<(), Failed> {
                 sum * (edge(row) - edge(row + 1)) * 2.0 * PI / f64::from(sky.width)
             };
             let expected: f64 = (0..sky.height).map(of_row).sum();
-            let found = texel(&image, 0, 0)[channel] * (4.0 * PI).sqrt();
+            let found = texel(coefficients, 0, 0)[channel] * (4.0 * PI).sqrt();
             println!("{name}: {:.5}", found / expected - 1.0);
             near(&format!("the light of {name}, channel {channel}"), found, expected, 0.005)?;
         }

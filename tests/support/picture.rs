@@ -116,13 +116,16 @@ pub struct Series(Option<Session>);
 
 impl Series {
     pub fn take(&mut self, shot: &Shot, scene: &str) -> Result<BTreeMap<String, LinearImage>, Failed> {
-        let mut world = world(scene)?;
+        self.take_world(shot, &mut world(scene)?)
+    }
+
+    pub fn take_world(&mut self, shot: &Shot, world: &mut World) -> Result<BTreeMap<String, LinearImage>, Failed> {
         let mut session = match self.0.take() {
             Some(mut session) => {
-                session.reload(&mut world, &shot.request()).map_err(shown)?;
+                session.reload(world, &shot.request()).map_err(shown)?;
                 session
             }
-            None => shot.session(&mut world)?,
+            None => shot.session(world)?,
         };
         settle(&mut session)?;
         let images = shot.outputs.iter().map(|name| Ok((name.clone(), session.read_output(name).map_err(shown)?))).collect();

@@ -65,8 +65,9 @@ pub fn white() -> Result<(), Failed> {
     }
     let worst = means.iter().flatten().map(|(sum, count)| (sum / f64::from(*count) - 1.0).abs()).fold(0.0, f64::max);
     let seen = means.iter().flatten().all(|(_, count)| *count > 200);
+    // Measured: 0.0003.
     println!("worst mean of a sphere is off by {worst:.5}");
-    if worst < 0.002 && seen { Ok(()) } else { Err(format!("a mean is off by {worst}, all spheres seen: {seen}").into()) }
+    if worst < 0.0005 && seen { Ok(()) } else { Err(format!("a mean is off by {worst}, all spheres seen: {seen}").into()) }
 }
 
 /// A and B of the table by cosine and roughness.
